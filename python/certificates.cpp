@@ -73,7 +73,7 @@ void bind_certificate(py::module_& module) {
   py::class_<Certificate>(module, "LegCheck", "Result of the clearance check of a straight leg.")
       .def_property_readonly(
           "is_clear", [](const Certificate& c) { return c.verification.is_verified; },
-          "Whether no point of the leg violates the clearance.")
+          "True if every point of the leg keeps the clearance.")
       .def_property_readonly(
           "is_proven",
           [](const Certificate& c) {

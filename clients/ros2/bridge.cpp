@@ -269,7 +269,7 @@ void Bridge::submit_scan(const Waiting& waiting, const PoseState& pose_state, do
   warn_throttled(
       "pose",
       "scan rejected: pose inconsistent with the map. Hold position, correct the pose, and "
-      "send the command take",
+      "send the command 'take'",
       now);
 }
 

@@ -143,14 +143,14 @@ double cross_validation_error(const std::vector<LogWindow>& windows, const Vehic
 void require_fit(const Calibration& fit) {
   if (fit.scatter > max_scatter * fit.hover_power) {
     throw Error(ErrorKind::bad_file,
-                "cannot be fitted by a power model: the power scatters by " +
-                    fixed(fit.scatter, 0) + " W around a hover power of " +
+                "does not fit a power model: the residual scatter (" + fixed(fit.scatter, 0) +
+                    " W) exceeds " + fixed(100.0 * max_scatter, 0) + "% of the hover power (" +
                     fixed(fit.hover_power, 0) +
-                    " W; check the current sensor or calibrate with another log");
+                    " W); check the current sensor or calibrate with another log");
   }
   if (fit.energy_error > max_unseen_error) {
     throw Error(ErrorKind::bad_file,
-                "cannot be fitted by a power model: the energy of its parts differs by up to " +
+                "does not fit a power model: the energy of its parts differs by up to " +
                     fixed(100.0 * fit.energy_error, 0) +
                     "% from a fit to the other parts; calibrate with a flight on one battery in "
                     "steady wind");

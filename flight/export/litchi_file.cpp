@@ -143,7 +143,7 @@ std::string write_litchi(const FlightPlan& plan) {
   if (plan.waypoints.size() > max_waypoints) {
     throw Error(ErrorKind::bad_config,
                 "\"" + plan.name + "\" has " + std::to_string(plan.waypoints.size()) +
-                    " waypoints; the limit of Litchi is 99: divide the plan with split_plan()");
+                    " waypoints; Litchi's limit is 99: divide the plan with split_plan()");
   }
   const LocalFrame frame(plan.site.origin);
   const double pad_height = frame.to_geodetic(plan.pad).height;

@@ -113,8 +113,8 @@ class ParameterWriter {
 
   void write_ardupilot() {
     comment(
-        "Return: ArduPilot up to 4.6 uses the names in centimetres, 4.7 and later those in "
-        "metres.");
+        "Return: ArduPilot 4.6 and earlier use the parameters in centimetres; 4.7 and later use "
+        "those in metres.");
     comment("The ground station may report that the other name of each pair is missing.");
     both("RTL_ALT", "RTL_ALT_M", returns_.height);
     set("RTL_CONE_SLOPE", 0);  // Otherwise it climbs less near home.

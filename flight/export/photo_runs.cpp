@@ -11,22 +11,22 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// How far a photo's direction may be from that of the first one in its run [rad].
+/// Maximum angle between a photo's direction and that of the first photo in its run [rad].
 constexpr double same_aim = 0.5 * geometry::radians_per_degree;
 
-/// How far a photo may be beside its run's leg, whose clearance is verified [m].
+/// Maximum distance of a photo from its run's leg, whose clearance is verified [m].
 constexpr double same_line = 0.02;
 
-/// Formats write speeds with two decimals; slower flights are not worth a run [m/s].
+/// Minimum speed of a run [m/s]. Formats store speeds with two decimals.
 constexpr double speed_step = 0.01, min_run_speed = 0.3;
 
-/// Finds the runs of a plan, one after the other.
+/// Finds the runs of a plan sequentially.
 class RunFinder {
  public:
   explicit RunFinder(const FlightPlan& plan) : plan_(plan), times_(stop_times(plan)) {}
 
-  /// The index of the last waypoint of the longest run that begins at `first`, and the run; without
-  /// photos if there is none.
+  /// Longest run from a waypoint, and the index of its last waypoint. The run has no photos if none
+  /// is possible.
   struct Found {
     std::size_t last = 0;
     PhotoRun run;
@@ -38,7 +38,7 @@ class RunFinder {
       if (!is_photo(plan_.waypoints[last]) || !has_same_aim(first, last)) break;
       const Vector3d path_curve = position(last) - position(first);
       if (is_beside(first, last, path_curve)) break;
-      if (last == first + 1) continue;  // nothing is between them
+      if (last == first + 1) continue;  // No photo is between them.
       const auto run = make_run(first, last, path_curve);
       if (run) found = {last, *run};
     }
@@ -59,7 +59,7 @@ class RunFinder {
     return std::atan2(from.cross(to).norm(), from.dot(to)) <= same_aim;
   }
 
-  /// Whether a point between them is beside their line, or not between its neighbours.
+  /// Returns true if a point between them is off their line or out of order.
   bool is_beside(std::size_t first, std::size_t last, const Vector3d& path_curve) const {
     const double length = path_curve.norm();
     if (length == 0.0) return true;
@@ -114,7 +114,7 @@ FlightPlan with_photo_runs(FlightPlan plan) {
       passed.push_back(plan.waypoints[k]);
       passed.back().hold = passed.back().hold_after = 0.0;
     }
-    // The end may be the start of the next run, and is looked at again then.
+    // The end may be the start of the next run and is therefore processed again.
     plan.waypoints[found.last].run = found.run;
     i = found.last;
   }

@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The format's name as users know it; empty: it commands no sensor.
+/// Returns the format's name for users, or an empty string if it commands no sensor.
 std::string commanding_format(Format format) {
   switch (format) {
     case Format::plan:
@@ -31,20 +31,21 @@ std::string commanding_format(Format format) {
   return "";
 }
 
-/// Turns heading and gimbal so that the camera's axis is the scanner's.
+/// Changes heading and gimbal pitch so that the camera axis coincides with the scanner's optical
+/// axis.
 void aim_at(FlightPlan& plan, const ScannerAim& aim) {
   for (Waypoint& waypoint : plan.waypoints) {
     if (!waypoint.is_capture_point) continue;
-    waypoint.yaw -= aim.azimuth;  // headings are clockwise, azimuths are not
+    waypoint.yaw -= aim.azimuth;  // Headings are clockwise, azimuths anticlockwise.
     waypoint.pitch = aim.pitch;
     waypoint.captures = 0;
   }
 }
 
-/// Where a calibration from `end` towards `other` turns round; nothing if that leg is too short or
-/// too steep to accelerate on.
+/// Returns the turning point of a calibration from `end` towards `other`, or nullopt if the leg is
+/// too short or too steep for the acceleration.
 std::optional<Vector3d> turning_point(const Vector3d& end, const Vector3d& other) {
-  constexpr double max_slope = 0.5;  // sine of the slope
+  constexpr double max_slope = 0.5;  // Sine of the slope.
   const Vector3d leg = other - end;
   const double length = leg.norm();
   if (length < min_calibration_length || std::abs(leg.z()) > max_slope * length)
@@ -52,7 +53,8 @@ std::optional<Vector3d> turning_point(const Vector3d& end, const Vector3d& other
   return end + std::min(1.0, calibration_length / length) * leg;
 }
 
-/// From `end` to the turning point and back, so many times.
+/// Returns the waypoints from `end` to the turning point and back, repeated for all calibration
+/// flights.
 std::vector<Waypoint> calibration(const Waypoint& end, const Vector3d& turning,
                                   const Waypoint& neighbour) {
   std::vector<Waypoint> waypoints;
@@ -68,7 +70,7 @@ std::vector<Waypoint> calibration(const Waypoint& end, const Vector3d& turning,
   return waypoints;
 }
 
-/// What both calibrations cost [J].
+/// Returns the energy of both calibrations [J].
 double calibration_energy(const FlightPlan& plan, const Vector3d& begin, const Vector3d& end) {
   const Motion motion(plan.vehicle, plan.conditions);
   double energy = 0.0;
@@ -127,7 +129,7 @@ FlightPlan with_scanner_commands(FlightPlan plan, Format format, const ScannerAi
     throw Error(ErrorKind::bad_config,
                 extension + " files cannot command the " + name +
                     (format == Format::kmz ? " at stops; set sensor.capture: moving"
-                                           : "; export kmz for a vehicle of DJI"));
+                                           : "; export kmz for a DJI vehicle"));
   }
   aim_at(plan, aim);
   calibrate(plan, energy_left, notes);

@@ -1,8 +1,8 @@
-/// How a laser scanner is commanded by the formats of route files.
+/// Commands for laser scanners in the formats of route files.
 ///
-/// What a vehicle carries is the payload of its WPML codes. DJI's documentation of WPML (common
-/// elements, edition of 2022) has the number of the Zenmuse L1, the camera types of its Payload SDK
-/// that of the L2, which the former does not list.
+/// WPML identifies the payload of a vehicle by a number. Source for the Zenmuse L1: DJI's WPML
+/// documentation, common elements, edition of 2022. Source for the L2, which that page does not
+/// list: the camera types of DJI's Payload SDK.
 #pragma once
 
 #include <cstddef>
@@ -15,37 +15,42 @@
 namespace skycap::flight {
 
 inline constexpr int zenmuse_l1 = 90742, zenmuse_l2 = 84;
-inline constexpr int psdk_payload = 65534;  ///< not of DJI: no file commands it
+inline constexpr int psdk_payload = 65534;  ///< Payload of another maker. Files cannot command it.
 
-/// The name of the scanner with that payload number that files can command; empty for all others.
+/// Returns the name of the scanner with that payload number, or an empty string if files cannot
+/// command it.
 std::string commanded_scanner(int payload);
 
-/// The IMU calibration of DJI's scanners: back and forth so often at both ends of the recording,
-/// over at most so much of the first and last straight leg (DJI Pilot 2's own: three times 30 m).
+/// Number of flights back and forth in each IMU calibration of DJI's scanners, at the start and at
+/// the end of the recording. DJI Pilot 2 uses the same number.
 inline constexpr int calibration_turns = 3;
-inline constexpr double calibration_length = 30.0, min_calibration_length = 10.0;  ///< [m]
+inline constexpr double calibration_length = 30.0,
+                        min_calibration_length = 10.0;  ///< Maximum and minimum length [m].
 
-/// Where a scanner looks that is fixed to the vehicle.
+/// Orientation of a scanner that is fixed to the vehicle.
 struct ScannerAim {
-  double azimuth = 0.0;   ///< of its optical axis, anticlockwise from the vehicle's nose [rad]
-  double pitch = 0.0;     ///< of its optical axis, 0 at the horizon [rad]
-  bool is_moving = true;  ///< measures in flight, else at stops
+  double azimuth =
+      0.0;  ///< Azimuth of the optical axis, anticlockwise from the vehicle's nose [rad].
+  double pitch = 0.0;  ///< Pitch of the optical axis, 0 at the horizon [rad].
+  bool is_moving =
+      true;  ///< True if the scanner measures in flight, false if it measures at stops.
 };
 
-/// The plan as files of this format hold it for a scanner.
+/// Returns the plan with the commands for a scanner that files of this format require.
 ///
-/// KMZ and a scanner that files can command: the vehicle's heading is that of the scanner's optical
-/// axis, so that the gimbal needs no yaw of its own, and the gimbal has the axis's pitch; it
-/// records from the first waypoint to the last one; before and after that the vehicle calibrates
-/// its IMU on verified legs, as far as `energy_left` [J] allows. Other formats cannot command such
-/// a scanner, nor can KMZ one that measures at stops: Error{bad_config} names it. Scanners that
-/// record by themselves are left to the pilot, with a note. Formats for maps and set-point
-/// followers command nothing: their plan is unchanged.
+/// With KMZ and a scanner that files can command, the vehicle's heading and the gimbal's pitch are
+/// those of the optical axis. The gimbal therefore needs no yaw of its own. The scanner records
+/// from the first to the last waypoint. Before and after the recording, the vehicle calibrates the
+/// IMU on verified legs if `energy_left` [J] is sufficient. Otherwise a note asks the pilot to do
+/// it. Throws Error{bad_config} with the scanner's name if the format cannot command it, or if it
+/// measures at stops. For other scanners, a note asks the pilot to start the recording. Formats for
+/// maps and set-point followers contain no commands. Their plan is returned unchanged.
 FlightPlan with_scanner_commands(FlightPlan plan, Format format, const ScannerAim& aim,
                                  double energy_left, std::vector<std::string>& notes);
 
-/// Between which waypoints a commanded scanner records: from the last one at the place of the first
-/// before any station, to the first one at the place of the last behind all stations.
+/// Waypoints between which a commanded scanner records: from the last waypoint at the first
+/// position, before any capture point, to the first one at the last position, after all capture
+/// points.
 struct RecordedWaypoints {
   std::size_t first = 0, last = 0;
 };

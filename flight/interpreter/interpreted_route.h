@@ -37,24 +37,24 @@ struct InterpretedStop {
       unspecified;  ///< Clockwise from north. `unspecified`: not specified in the file.
   double pitch_deg = unspecified;  ///< Gimbal pitch, 0 at the horizon.
   int captures = 0;
-  double hold_after = 0.0;  ///< at rest after the first photograph [s]
+  double hold_after = 0.0;  ///< Rest time after the first photo [s].
 };
 
-/// A photograph that is taken without a stop, on a straight leg.
+/// Photo taken in flight on a straight leg.
 struct FlownPass {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  std::string item;                ///< that the leg leads to
-  double yaw_deg = unspecified;    ///< as of a stop
-  double pitch_deg = unspecified;  ///< as of a stop
+  std::string item;                ///< Item at the end of the leg.
+  double yaw_deg = unspecified;    ///< As in InterpretedStop.
+  double pitch_deg = unspecified;  ///< As in InterpretedStop.
   double speed = unspecified;      ///< Ground speed, if specified in the file [m/s].
-  double spacing = 0.0;            ///< from the photograph before it or the start of the leg [m]
-  std::size_t stops_before = 0;    ///< index in InterpretedRoute::stops of the next stop
+  double spacing = 0.0;          ///< Distance from the previous photo or the start of the leg [m].
+  std::size_t stops_before = 0;  ///< Index of the next stop in InterpretedRoute::stops.
 };
 
 struct InterpretedRoute {
   std::vector<InterpretedSegment> segments;  ///< In flight order.
   std::vector<InterpretedStop> stops;        ///< Stops with photos.
-  std::vector<FlownPass> is_fly_through;     ///< photographs without a stop
+  std::vector<FlownPass> is_fly_through;     ///< Photos taken in flight.
   Problems problems;                         ///< Unsafe or unknown behaviour, per item.
 };
 
@@ -68,9 +68,9 @@ struct RouteVerification {
 RouteVerification verify(const InterpretedRoute& route, const FreeSpace& space,
                          const FreeSpace& pad_space, double clearance, double up_to);
 
-/// Adds the photographs of a trigger at even distances on the straight leg that ends the route so
-/// far: one at each multiple of `spacing` (positive) from its start, none within half of that from
-/// its end, where the vehicle stops.
+/// Adds the photos of a distance trigger on the last straight leg of the route. One photo is at
+/// each multiple of `spacing` [m] (positive) from the leg's start. Photos within half of that
+/// distance from its end are not added, because the vehicle stops there.
 void append_passes(InterpretedRoute& route, double spacing, double yaw_deg, double pitch_deg);
 
 /// Returns the length of the pieces that are not above the pad [m].

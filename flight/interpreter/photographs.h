@@ -6,12 +6,12 @@
 
 namespace skycap::flight {
 
-/// Holds that are too short, directions that the gimbal does not have, photographs that follow one
-/// another faster or are taken at a higher speed than the photo camera allows, and, where the
-/// mission's views are known, photographs that are none of them, by item.
+/// Returns the problems of the photos by item: holds that are too short, directions that the gimbal
+/// cannot reach, and intervals or speeds that the photo camera does not allow. If the mission's
+/// views are known, photos that match no view are also problems.
 Problems check_photographs(const InterpretedRoute& route, const FlightFacts& facts);
 
-/// Views of the mission that the file takes no photograph of, by their positions.
+/// Returns a problem for each view of the mission without a photo in the file, by position.
 Problems missing_photographs(const InterpretedRoute& route, const FlightFacts& facts);
 
 }  // namespace skycap::flight

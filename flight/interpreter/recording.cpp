@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 
 constexpr double direction_tolerance_deg = 1.0;
 constexpr double recording_tolerance = 2.0 * rounding_bound;
-constexpr double cruise_speed_tolerance = 0.011;  ///< WPML has two decimals [m/s]
+constexpr double cruise_speed_tolerance = 0.011;  ///< WPML stores two decimals [m/s].
 
 bool is_at(const Vector3d& a, const Vector3d& b) { return (a - b).norm() <= recording_tolerance; }
 
@@ -23,8 +23,8 @@ bool is_turned(double angle_deg, double expected_deg) {
   return !(std::abs(std::remainder(angle_deg - expected_deg, 360.0)) <= direction_tolerance_deg);
 }
 
-/// Those between the calibrations, which shuttle between the end waypoint and a place on the leg
-/// beside it.
+/// Returns the legs between the calibrations, which fly back and forth between the end waypoint and
+/// a point on the adjacent leg.
 std::span<const ScannedLeg> without_calibration(std::span<const ScannedLeg> legs) {
   if (legs.empty()) return legs;
   const Vector3d begin = legs.front().from, end = legs.back().to;
@@ -43,7 +43,7 @@ double heading_deg(const geometry::View& observation) {
   return compute_yaw(observation) / geometry::radians_per_degree;
 }
 
-/// The look at a position; nothing if there is none.
+/// Returns the view at a position, or null without a view.
 const geometry::View* look_at(const std::vector<geometry::View>& observations,
                               const Vector3d& position) {
   const auto found = std::ranges::find_if(observations, [&](const geometry::View& observation) {
@@ -52,12 +52,12 @@ const geometry::View* look_at(const std::vector<geometry::View>& observations,
   return found == observations.end() ? nullptr : &*found;
 }
 
-/// What is wrong with the looks on a leg that begins with that heading.
+/// Returns the problems of the scanner directions on a leg that starts with this heading.
 Problems check_looks(const ScannedLeg& leg, double yaw_from_deg, double yaw_deg, double pitch_deg,
                      const std::string& name) {
   Problems problems;
   const auto add_problem = [&](const std::string& what, double is_deg, double right_deg) {
-    problems.push_back(what + " of " + fixed(is_deg, 1) + " degrees; the " + name + " looks to " +
+    problems.push_back(what + " of " + fixed(is_deg, 1) + " degrees; the " + name + " requires " +
                        fixed(right_deg, 1) + " degrees");
   };
   if (is_turned(leg.pitch_deg, pitch_deg))
@@ -85,7 +85,7 @@ Problems check_recording(std::span<const ScannedLeg> legs, const FlightFacts& fa
                          " m/s");
     }
     if (facts.views.empty()) continue;
-    // The vehicle turns on the last piece of a leg: corners keep the heading before.
+    // The vehicle turns on the last segment of a leg. Corners keep the previous heading.
     const geometry::View* observation = look_at(facts.views, leg.to);
     const double next_deg = observation == nullptr ? yaw_deg : heading_deg(*observation);
     const double pitch_deg = compute_pitch(facts.views.front()) / geometry::radians_per_degree;

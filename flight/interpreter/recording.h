@@ -1,4 +1,4 @@
-/// Whether a laser scanner records all that its mission wants, and looks there.
+/// Verification that the legs of a file are recorded by a laser scanner in the planned directions.
 #pragma once
 
 #include <span>
@@ -11,22 +11,23 @@
 
 namespace skycap::flight {
 
-/// A leg between two waypoints as a file makes a vehicle with a scanner fly it.
+/// Leg between two waypoints, as a vehicle with a scanner flies it according to the file.
 struct ScannedLeg {
   Eigen::Vector3d from = Eigen::Vector3d::Zero(), to = Eigen::Vector3d::Zero();
   std::string from_item, to_item;
-  double speed = unspecified;  ///< over ground [m/s]
+  double speed = unspecified;  ///< Ground speed [m/s].
   bool is_recorded = false;
-  double yaw_from_deg = unspecified;  ///< heading at its start, clockwise from north
-  double yaw_deg = unspecified;       ///< heading at its end; it turns evenly between them
-  double pitch_deg = unspecified;     ///< of the gimbal, on all of it
+  double yaw_from_deg = unspecified;  ///< Heading at the start, clockwise from north.
+  double yaw_deg =
+      unspecified;  ///< Heading at the end. The heading changes linearly along the leg.
+  double pitch_deg = unspecified;  ///< Gimbal pitch, constant along the leg.
 };
 
-/// Legs that are not recorded, are flown at another speed than the mission's, or on which the
-/// scanner looks elsewhere than the mission's views, by item: at every moment, since headings turn
-/// evenly on the last leg before a view and pitches do not change. Legs of an IMU calibration, back
-/// and forth at the ends of the route, are left out. Nothing where facts.vehicle carries no scanner
-/// that files command.
+/// Returns the problems of the legs by item: legs that are not recorded, have another speed than
+/// the mission, or have another scanner direction than the mission's views. The comparison at both
+/// ends covers the whole leg, because headings change linearly and pitches are constant. Legs of an
+/// IMU calibration, back and forth at the ends of the route, are skipped. Returns no problems if
+/// the vehicle has no scanner that files can command.
 Problems check_recording(std::span<const ScannedLeg> legs, const FlightFacts& facts);
 
 }  // namespace skycap::flight

@@ -16,7 +16,7 @@ namespace skycap::flight {
 /// Reason for a missing verified return, with its remedy.
 struct NoReturn {
   std::string reason;  ///< Obstacle and position. Empty: a return exists.
-  std::string remedy;  ///< what the user can change, as a command
+  std::string remedy;  ///< Instruction to the user.
 
   explicit operator bool() const { return !reason.empty(); }
 };

@@ -1,7 +1,7 @@
-/// Lens distortion of Brown and Conrady on the normalised image plane.
+/// Lens distortion after Brown and Conrady on the normalised image plane.
 ///
-/// Source: Brown, Close-Range Camera Calibration, 1971, in the form of OpenCV and of COLMAP's model
-/// FULL_OPENCV.
+/// Source: Brown, Close-Range Camera Calibration, 1971, in the form used by OpenCV and by COLMAP's
+/// model FULL_OPENCV.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,12 +10,12 @@
 
 namespace skycap::geometry {
 
-/// Where a point at `slope` (x/z and y/z in the camera frame) appears on the normalised image
-/// plane: its slope through a pinhole camera.
+/// Applies the distortion to a point with undistorted coordinates `slope` (x/z and y/z in the
+/// camera frame). Returns its coordinates on the normalised image plane.
 Eigen::Vector2d distort(const BrownDistortion& intrinsics, const Eigen::Vector2d& slope);
 
-/// The slope that appears at `distorted`: inverse of distort() within 1e-12, by fixed-point
-/// iteration. Exact only where distort() maps slopes one to one; elsewhere the last iterate.
+/// Removes the distortion: inverse of distort() within 1e-12, by fixed-point iteration. Where
+/// distort() is not one-to-one, returns the last iterate, which may be inexact.
 Eigen::Vector2d undistort(const BrownDistortion& intrinsics, const Eigen::Vector2d& distorted);
 
 }  // namespace skycap::geometry

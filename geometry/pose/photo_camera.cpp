@@ -30,7 +30,7 @@ void require_sides(const PhotoCameraConfig& config) {
           per_mm * config.focal_length, "between 0.1 and 10000 mm");
 }
 
-/// A number with up to `digits` significant digits.
+/// Returns a number with up to `digits` significant digits.
 std::string text(double value, int digits = 6) {
   std::array<char, 40> characters{};
   std::to_chars(characters.begin(), characters.end() - 1, value, std::chars_format::general,
@@ -42,7 +42,7 @@ std::string size_text(const Eigen::Vector2d& metres) {
   return text(per_mm * metres.x()) + " x " + text(per_mm * metres.y()) + " mm";
 }
 
-/// Throws if the sizes of sensor and image are of different crops.
+/// Throws Error if sensor size and image size refer to different crops.
 void require_square_pixels(const PhotoCameraConfig& config) {
   const double across = config.sensor_size.x() / config.width;
   const double down = config.sensor_size.y() / config.height;
@@ -55,8 +55,8 @@ void require_square_pixels(const PhotoCameraConfig& config) {
                   " um; set the size of the crop that the image uses");
 }
 
-/// Throws if the field of view contradicts the focal length, or without one, if the focal length
-/// evidently is the 35 mm equivalent.
+/// Throws Error if the field of view contradicts the focal length. Without a field of view, throws
+/// Error if the focal length is evidently the 35 mm equivalent.
 void require_true_focal_length(const PhotoCameraConfig& config) {
   const double follows = 2.0 * std::atan(0.5 * config.sensor_size.x() / config.focal_length);
   const std::string focal = "focal_length (" + text(per_mm * config.focal_length) + " mm)";
@@ -73,7 +73,7 @@ void require_true_focal_length(const PhotoCameraConfig& config) {
                     ", the field of view gives " + text(per_mm * agreeing, 4) +
                     " mm; set the true focal length, not the 35 mm equivalent");
   }
-  constexpr double full_frame_diagonal = 0.0432666;  // of 36 x 24 mm
+  constexpr double full_frame_diagonal = 0.0432666;  // Diagonal of 36 x 24 mm [m].
   const double crop = full_frame_diagonal / config.sensor_size.norm();
   const double focal_mm = per_mm * config.focal_length;
   if (crop < 1.9 || focal_mm < 20.0 || focal_mm > 30.0) return;
@@ -116,7 +116,7 @@ double PhotoCamera::vertical_fov() const {
 
 std::optional<Eigen::Vector2d> PhotoCamera::project(const Eigen::Vector3d& point_in_camera,
                                                     double border) const {
-  if (!(point_in_camera.z() > 0.0)) return std::nullopt;  // NaN too
+  if (!(point_in_camera.z() > 0.0)) return std::nullopt;  // Also rejects NaN.
   const Eigen::Vector2d from_middle =
       point_in_camera.head<2>() * (focal_length_px_ / point_in_camera.z());
   const double kept = 0.5 - border;

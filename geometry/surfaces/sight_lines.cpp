@@ -12,11 +12,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A ray, and how far it is followed.
+/// Ray with its maximum length.
 struct Ray {
   Ray(const Vector3d& origin, const Vector3d& direction, double length)
       : from(origin), along(direction), end(length) {
-    constexpr double tiny = 1e-200;  // a quotient by it is large but finite
+    constexpr double tiny = 1e-200;  // Quotients by this value are large but finite.
     for (int axis = 0; axis < 3; ++axis) {
       const double part = direction[axis];
       inverse[axis] = 1.0 / (std::abs(part) > tiny ? part : std::copysign(tiny, part));
@@ -27,8 +27,8 @@ struct Ray {
   double end;
 };
 
-/// Where the ray crosses a facet: Moller and Trumbore, "Fast, minimum storage ray/triangle
-/// intersection", 1997. Borders belong to the facet, a little widened, so that rays do not slip
+/// Returns the intersection of the ray with a triangle: Moller and Trumbore, "Fast, minimum storage
+/// ray/triangle intersection", 1997. Triangles are slightly enlarged, so that rays do not pass
 /// between neighbours.
 std::optional<double> crossing(const Facet& facet, const Ray& ray) {
   constexpr double border = 1e-10;
@@ -50,8 +50,9 @@ std::optional<double> crossing(const Facet& facet, const Ray& ray) {
 
 using Lanes = Eigen::Array<double, FacetNode::lanes, 1>;
 
-/// Which children's boxes the ray meets. The quotients' rounding is made up for; a child that is
-/// not there has a box at infinity, which no ray of finite length meets.
+/// Returns the children whose boxes the ray intersects. The test allows for the rounding of the
+/// quotients. The box of a missing child is at infinity, where no ray of finite length intersects
+/// it.
 Eigen::Array<bool, FacetNode::lanes, 1> meets(const FacetNode& node, const Ray& ray) {
   Lanes begin = Lanes::Zero(), end = Lanes::Constant(ray.end);
   for (int axis = 0; axis < 3; ++axis) {
@@ -72,7 +73,7 @@ Eigen::Array<bool, FacetNode::lanes, 1> meets(const FacetNode& node, const Ray& 
 struct SightLines::Impl {
   FacetTree tree;
 
-  /// Calls `found(distance)` for crossings that are nearer than `ray.end`, until it returns true.
+  /// Calls `found(distance)` for intersections closer than `ray.end` until it returns true.
   template <typename Found>
   void visit(Ray& ray, Found&& found) const {
     if (tree.nodes.empty()) return;

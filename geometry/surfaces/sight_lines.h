@@ -1,4 +1,4 @@
-/// Whether straight lines between points are obstructed by a surface: rays against a triangle mesh.
+/// Line-of-sight tests between points: ray queries against a triangle mesh.
 #pragma once
 
 #include <memory>
@@ -10,25 +10,25 @@
 
 namespace skycap::geometry {
 
-/// A mesh prepared for ray queries. Both sides of a triangle obstruct; triangles without area are
-/// skipped. In double precision and without vector instructions of its own, so that results do not
-/// depend on the processor. Immutable; safe to query from several threads.
+/// Mesh prepared for ray queries. Triangles obstruct from both sides. Triangles without area are
+/// skipped. Computation is in double precision without explicit vector instructions, so that
+/// results do not depend on the processor. Immutable. Thread-safe for queries.
 class SightLines {
  public:
-  /// Built on `threads` threads (zero: all processors), which do not change the result. Keeps no
-  /// reference. An empty mesh obstructs nothing.
+  /// Builds the search tree on `threads` threads (zero: all processors), which do not affect the
+  /// result. Keeps no reference to `mesh`. An empty mesh obstructs nothing.
   explicit SightLines(const Mesh& mesh, unsigned threads = 0);
   SightLines(SightLines&&) noexcept;
   SightLines& operator=(SightLines&&) noexcept;
   ~SightLines();
 
-  /// Distance from `origin` [m] to the first triangle along `direction` (unit) that is nearer than
-  /// `max_distance`; nothing without one.
+  /// Returns the distance from `origin` to the first triangle along the unit vector `direction`
+  /// within `max_distance` [m], or nullopt if no triangle is hit.
   std::optional<double> first_hit(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                                   double max_distance) const;
 
-  /// Whether the line from `from` towards `to` is free for the fraction `fraction` of its length.
-  /// Below 1, the surface that `to` lies on does not obstruct it.
+  /// Returns true if the line from `from` towards `to` is free over the first `fraction` of its
+  /// length. With a fraction below 1, the surface at `to` does not obstruct it.
   bool is_clear(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double fraction) const;
 
  private:

@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The keys of a live mission, checked against each other.
+/// Consistency check of a live mission's keys.
 class LiveCheck {
  public:
   LiveCheck(const config::MissionSetup& setup)

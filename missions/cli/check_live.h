@@ -1,4 +1,5 @@
-/// `skycap check` of live missions, and what it says of sensors that are used beyond their range.
+/// `skycap check` for live missions, and its warning about sensors that are used outside their
+/// range.
 #pragma once
 
 #include <optional>
@@ -9,13 +10,13 @@
 
 namespace skycap::missions::cli {
 
-/// A warning if the view distance is outside the depths that the mission's camera preset measures
-/// well (`useful_range` of its description); empty otherwise. `view_distance` in metres.
+/// Returns a warning if `view_distance` [m] is outside the `useful_range` of the mission's camera
+/// preset, in which its depths are accurate. Otherwise returns an empty string.
 std::string range_warning(const config::MissionSetup& setup, double view_distance);
 
-/// Checks the keys of a live mission against each other and prints what follows from them: view
-/// distance, sensor, region of interest, limits and first view. There is no scene that could be
-/// surveyed. Exit code 0 without problems, otherwise 1.
+/// Checks the keys of a live mission for consistency. Prints the derived values: view distance,
+/// sensor, region of interest, limits and first view. No scene is simulated. Returns the exit code:
+/// 0 without problems, otherwise 1.
 int check_live(const std::string& file, const config::MissionSetup& setup, const Console& console);
 
 }  // namespace skycap::missions::cli

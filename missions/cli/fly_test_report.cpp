@@ -112,9 +112,10 @@ std::string criterion_text(const TestedFile& file, std::size_t j) {
   const TestFlight& nearest = nearest_flight(file, j);
   const flight::NearestApproach& approach = nearest.simulated.nearest[j];
   if (approach.closest.kind != flight::ObstacleKind::none) {
-    text += fmt::format("            minimum in flight {} after {:.0f} s{}, to {}\n",
-                        nearest.draw.number, approach.time,
-                        approach.is_returning ? ", on return" : "", file.obstacles[j]);
+    text += fmt::format(
+        "            minimum reached in flight {} after {:.0f} s{}; nearest obstacle: {}\n",
+        nearest.draw.number, approach.time, approach.is_returning ? ", on return" : "",
+        file.obstacles[j]);
   }
   if (file.test.returns.empty() || file.test.returns[j].simulated == 0) return text;
   const flight::ReturnTest& returns = file.test.returns[j];

@@ -107,8 +107,8 @@ Proposal proposal_for(const InitOptions& options) {
         std::clamp(proposal.view_distance, rounded(1.5 * proposal.clearance), 25.0);
   } else if (proposal.target.sizes().minCoeff() <= 2.0 * proposal.clearance) {
     throw Error(ErrorKind::bad_usage,
-                fmt::format("--size: the room must be larger than twice the clearance of {:g} m on "
-                            "each side; raise --size or use --vehicle none",
+                fmt::format("--size: each side of the room must be longer than twice the clearance "
+                            "({:g} m); raise --size or use --vehicle none",
                             proposal.clearance));
   }
   return proposal;

@@ -79,8 +79,8 @@ std::string left_out_text(const online::ScanFound& found) {
     if (count > 0) text += fmt::format(", {} {}", count, what);
   };
   add(found.without_return, "no-return pixels");
-  add(found.out_of_view, "points outside the camera's view ignored");
-  add(found.hidden, "points hidden by others in the same pixel ignored");
+  add(found.out_of_view, "points ignored (outside the camera's view)");
+  add(found.hidden, "points ignored (hidden by other points in the same pixel)");
   add(found.left_out.flying, "flying pixels removed");
   add(found.left_out.isolated, "isolated returns removed");
   return text;
@@ -266,7 +266,8 @@ int next(const NextOptions& options, const Console& console) {
   if (options.scan.has_value() + options.dataset.has_value() +
           options.rejection_reason.has_value() >
       1) {
-    throw Error(ErrorKind::bad_usage, "--scan, --dataset and --refuse exclude each other; use one");
+    throw Error(ErrorKind::bad_usage,
+                "--scan, --dataset and --refuse are mutually exclusive; use one");
   }
   if (options.is_en_route && !options.scan) {
     throw Error(ErrorKind::bad_usage, "--en-route requires --scan");

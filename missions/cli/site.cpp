@@ -60,7 +60,7 @@ wizard::Pick make_pick(const SiteOptions& options) {
       (pick.ids.empty() ? 0 : 1) + (pick.attributes.empty() ? 0 : 1) + (pick.click ? 1 : 0);
   if (source_count > 1) {
     throw Error(ErrorKind::bad_usage,
-                "--id, --at and --attribute exclude each other; use one of them");
+                "--id, --at and --attribute are mutually exclusive; use one of them");
   }
   return pick;
 }
@@ -224,10 +224,11 @@ void add_site(CLI::App& app, const Console& console, Action& action) {
       ->allow_extra_args(false);
   command->add_option(
       "--crs", options->crs,
-      "Coordinate reference system of the map, instead of its own, and of files without one");
+      "Coordinate reference system; overrides that of the map and applies to files that do not "
+      "specify one");
   command
       ->add_option("--vertical", options->vertical,
-                   "Vertical datum of the files, if they do not contain one: ellipsoid or geoid")
+                   "Vertical datum of files that do not specify one: ellipsoid or geoid")
       ->check(CLI::IsMember({to_string(datums[0]), to_string(datums[1])}));
   command->add_option(
       "--base", options->base,

@@ -23,14 +23,14 @@ std::string without_numbers(const std::string& text) {
   return rest;
 }
 
-/// A count and its total.
+/// Count with its total.
 struct Count {
   double done = 0.0, total = 0.0;
-  std::size_t end = 0;  ///< of the total, or of the percent sign, in the text
+  std::size_t end = 0;  ///< Position in the message after the total, or of the percent sign.
   bool is_percent = false;
 };
 
-/// The number that ends before a place of the text; nothing if none does.
+/// Returns the number that ends before a position in the message, or nullopt.
 std::optional<double> number_before(const std::string& text, std::size_t end) {
   std::size_t begin = end;
   while (begin > 0 && (is_digit(text[begin - 1]) || text[begin - 1] == '.')) --begin;

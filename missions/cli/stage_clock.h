@@ -1,4 +1,4 @@
-/// How fast the stages of a command advance, read from their progress texts.
+/// Rate and remaining time of a command's stages, derived from its progress messages.
 #pragma once
 
 #include <optional>
@@ -8,29 +8,30 @@ namespace skycap::missions::cli {
 
 class StageClock {
  public:
-  /// Takes in a progress text at `now` [s]. A text with another wording, numbers and what follows
-  /// "N of M" or "N%" aside, begins a stage.
+  /// Processes a progress message received at `now` [s]. A message with different wording starts a
+  /// new stage. Numbers and the text after "N of M" or "N%" are not compared.
   void hear(const std::string& text, double now);
 
-  /// Rate and remaining time, such as ", 2.5/s, 40 s left": of "N of M" in the text heard last, or
-  /// of "N%". Empty before the stage has advanced for two seconds, for texts without such numbers
-  /// and for those that name a remaining time themselves.
+  /// Returns the rate and remaining time, such as ", 2.5/s, 40 s left", computed from "N of M" or
+  /// "N%" in the latest message. Returns an empty string during the first two seconds of a stage,
+  /// and for messages without such numbers or with a remaining time of their own.
   std::string rate_text() const;
 
-  /// Whether a log should have a line now: the stage is new, or ten seconds have passed since
-  /// the last line. Counts as a line if so.
+  /// Returns true if the log requires a line now: at the start of a stage, and ten seconds after
+  /// the previous line. Records the time of the line in this case.
   bool is_due();
 
-  /// Since the first text [s].
+  /// Returns the time since the first message [s].
   double elapsed() const { return now_ - begin_.value_or(now_); }
 
  private:
-  std::string stage_;                           ///< the text without its numbers
-  std::optional<double> begin_;                 ///< of everything [s]
-  std::optional<double> logged_;                ///< when the last line was due [s]
-  double now_ = 0.0;                            ///< [s]
-  double stage_begin_ = 0.0;                    ///< [s]
-  std::optional<double> first_, done_, total_;  ///< counts: at the stage's begin, now, at its end
+  std::string stage_;             ///< Message without its numbers.
+  std::optional<double> begin_;   ///< Time of the first message [s].
+  std::optional<double> logged_;  ///< Time of the latest log line [s].
+  double now_ = 0.0;              ///< Time of the latest message [s].
+  double stage_begin_ = 0.0;      ///< Start of the stage [s].
+  std::optional<double> first_, done_,
+      total_;  ///< Counts at the start of the stage, now, and at its end.
   bool names_time_ = false, is_percent_ = false;
 };
 

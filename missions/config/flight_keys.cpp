@@ -74,12 +74,12 @@ std::vector<Key> fleet_keys() {
   return {
       vehicles_key(),
       pads_key(),
-      fleet_key(
-          "makespan",
-          choice_key("flight.fleet_goal", {"makespan", "total_time"},
-                     fleet(&flight::FleetOptions::goal),
-                     "Objective for distributing the views over flight.vehicles: the earliest "
-                     "last landing or the minimum total flight time.")),
+      fleet_key("makespan",
+                choice_key("flight.fleet_goal", {"makespan", "total_time"},
+                           fleet(&flight::FleetOptions::goal),
+                           "Objective for distributing the views among flight.vehicles. makespan: "
+                           "minimum time until the last landing. total_time: minimum total flight "
+                           "time.")),
       fleet_key("10 m",
                 number_key("flight.separation", "m", above(0, 10'000),
                            fleet(&flight::FleetOptions::separation),

@@ -8,7 +8,7 @@
 namespace skycap::missions::config {
 namespace {
 
-/// Two numbers of a list.
+/// Returns the two numbers of a list.
 Eigen::Vector2d pair_of(support::YamlSection& section, const std::string& key) {
   const std::vector<double> values = section.numbers(key);
   if (values.size() != 2) section.fail_at(key, "must be a list of two numbers: width and height");
@@ -60,7 +60,7 @@ geometry::PhotoCameraConfig read_photo_camera(const std::string& text, const std
   root.finish();
   try {
     camera.validate();
-  } catch (const Error& error) {  // it knows the field, not the file
+  } catch (const Error& error) {  // The error contains the field, but not the file.
     throw Error(error.kind(), file + ": " + error.what());
   }
   return camera;

@@ -1,5 +1,5 @@
-/// Descriptions of photo cameras: YAML files in the terms of data sheets, and the presets that come
-/// with the program (survey/photo/presets/*.yaml, compiled into it).
+/// Descriptions of photo cameras: YAML files with the values of data sheets, and built-in presets
+/// (survey/photo/presets/*.yaml, compiled into the program).
 #pragma once
 
 #include <string>
@@ -10,16 +10,16 @@
 
 namespace skycap::missions::config {
 
-/// Reads the text of a description; `file` is what messages call it. Throws Error{bad_config} in
-/// the form "FILE:LINE: key KEY WHAT IS WRONG", or "FILE: " with what PhotoCameraConfig::validate()
-/// throws.
+/// Reads the text of a description. `file` is its name in messages. Throws Error{bad_config} in the
+/// form "FILE:LINE: key KEY PROBLEM", or "FILE: " followed by the error of
+/// PhotoCameraConfig::validate().
 geometry::PhotoCameraConfig read_photo_camera(const std::string& text, const std::string& file);
 
-/// The names of the presets, such as "mavic_3e_wide", in alphabetical order.
+/// Returns the names of the presets, such as "mavic_3e_wide", in alphabetical order.
 std::vector<std::string_view> photo_camera_presets();
 
-/// The description of that name, or that the file of that path holds if it ends in .yaml. Throws
-/// Error{bad_config} with the known names, or Error{bad_file}.
+/// Returns the preset with that name or, if the name ends in .yaml, the description in that file.
+/// Throws Error{bad_config} with the known names, or Error{bad_file}.
 geometry::PhotoCameraConfig find_photo_camera(const std::string& name_or_file);
 
 }  // namespace skycap::missions::config

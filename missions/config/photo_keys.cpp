@@ -1,11 +1,11 @@
-// The keys of `photo`: photos for photogrammetry.
+// Keys of the section `photo`: photos for photogrammetry.
 #include "missions/config/key_builders.h"
 #include "missions/config/key_sections.h"
 
 namespace skycap::missions::config {
 namespace {
 
-/// The field of the section that `member` points to.
+/// Returns access to the field of the section that `member` points to.
 auto photo(auto member) {
   return [member](auto& m) -> auto& { return m.photo.*member; };
 }
@@ -13,20 +13,21 @@ auto rule(auto member) {
   return [member](auto& m) -> auto& { return m.photo.rule.*member; };
 }
 
-/// The key `photo.patterns`, whose empty list means none.
+/// Returns the key `photo.patterns`. An empty list means no patterns.
 Key patterns_key() {
   return otherwise(
       "facade, dome, oblique",
-      key_for("photo.patterns", KeyType::texts, photo(&PhotoSection::patterns),
-              "Flight patterns that are compared with the plan, and whose photos it may take: "
-              "nadir, oblique, dome, facade. [] for none."));
+      key_for(
+          "photo.patterns", KeyType::texts, photo(&PhotoSection::patterns),
+          "Flight patterns that are compared with the plan and provide candidate photos for it: "
+          "nadir, oblique, dome, facade. [] for none."));
 }
 
-/// The key `photo.pattern`, which replaces the choice of photos.
+/// Returns the key `photo.pattern`, which replaces the selection of photos.
 Key pattern_key() {
   Key key = text_key("photo.pattern", photo(&PhotoSection::pattern),
-                     "Flight pattern that is flown as it is, instead of a choice of photos: nadir, "
-                     "oblique, dome or facade.");
+                     "Flight pattern that replaces the choice of photos: nadir, oblique, dome or "
+                     "facade.");
   return otherwise("none", key);
 }
 
@@ -42,7 +43,7 @@ std::vector<Key> photo_keys() {
           "3; 4 with photo.pass: coarse",
           integer_key("photo.min_partners", "", between(2, 6), photo(&PhotoSection::min_partners),
                       "Stereo partners that one photo of each surface point must have: K. A "
-                      "point is satisfied with K + 1 suitable photos. 4: for plain walls.")),
+                      "point is satisfied with K + 1 suitable photos. Use 4 for plain walls.")),
       angle_key("photo.max_incidence_deg", between(45, 85),
                 rule(&survey::photo::StereoRule::max_incidence),
                 "Maximum angle of incidence of a photo's ray at the surface."),
@@ -52,10 +53,11 @@ std::vector<Key> photo_keys() {
       angle_key("photo.max_parallax_deg", between(1, 60),
                 rule(&survey::photo::StereoRule::max_parallax),
                 "Maximum parallax of stereo partners, at the surface."),
-      choice_key("photo.poses", {"known", "unknown"}, photo(&PhotoSection::poses),
-                 "Poses of the photos in the photogrammetry program. known: RTK or PPK poses are "
-                 "given to it. unknown: it has to find them; photos are added until all of them "
-                 "register to one another."),
+      choice_key(
+          "photo.poses", {"known", "unknown"}, photo(&PhotoSection::poses),
+          "Poses of the photos in the photogrammetry program. known: RTK or PPK poses are "
+          "given to it. unknown: the program estimates them; photos are added until all of them "
+          "register to one another."),
       patterns_key(),
       pattern_key(),
       number_key("photo.forward_overlap", "share", between(0, 0.95),
@@ -69,7 +71,8 @@ std::vector<Key> photo_keys() {
       integer_key("photo.max_photos", "", between(1, 100'000), photo(&PhotoSection::max_photos),
                   "Maximum number of photos."),
       choice_key("photo.pass", {"coarse", "final"}, photo(&PhotoSection::pass),
-                 "Flight of two, where only an outline is known. coarse: three times photo.gsd, "
+                 "Pass of two, for targets of which only an outline is known. coarse: three times "
+                 "photo.gsd, "
                  "for a first model of the target. final: photo.gsd."),
   };
 }

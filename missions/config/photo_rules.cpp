@@ -11,7 +11,7 @@ namespace {
 
 using survey::photo::Pattern;
 
-/// The ground sampling distance that is planned for: three times that of the mission on a coarse
+/// Returns the ground sampling distance of the plan: three times that of the mission on a coarse
 /// pass.
 double planned_gsd(const MissionDocument& document) {
   constexpr double coarser = 3.0;

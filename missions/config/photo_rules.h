@@ -1,5 +1,4 @@
-/// Rules of photo cameras for other keys of a mission: values that follow from them, and
-/// checks.
+/// Effects of a photo camera on other keys of a mission: derived values and checks.
 #pragma once
 
 #include <optional>
@@ -12,28 +11,28 @@
 
 namespace skycap::missions::config {
 
-/// Options of the photos that a mission plans.
+/// Options for the photos of a mission.
 struct PhotoSetup {
   survey::photo::PhotoPlanOptions options;
   FreeSpaceRule free_space = FreeSpaceRule::measured;
   PhotoPass pass = PhotoPass::final_pass;
 };
 
-/// The key that replaces a key of depth sensing where there is a photo camera, "-" if none does;
-/// empty for keys that apply to photo cameras as well.
+/// Returns the key that replaces a key for depth sensors if the mission has a photo camera, or "-"
+/// without a replacement. Returns an empty string for keys that also apply to photo cameras.
 std::string_view find_replacing_photo_key(std::string_view key);
 
-/// Checks the keys of photos against the others. Throws Error{bad_config} as
-/// MissionDocument::reject() if keys of depth sensing are given beside a photo camera, naming the
-/// key that replaces them; if photos have no target or no ground sampling distance; or if keys of
-/// photos are given without a photo camera.
+/// Checks the keys of `photo` against the others. Throws the error of MissionDocument::reject() if
+/// keys for depth sensors are combined with a photo camera; the message contains the replacement.
+/// Also throws it if photos have no target or no ground sampling distance, or if `photo` is used
+/// without a photo camera.
 void check_photo(const MissionDocument& document);
 
-/// Puts a photo camera in the depth camera's place, with the view distance that the mission's
-/// ground sampling distance requires. The document is checked.
+/// Replaces the depth camera by a photo camera, with the view distance required by the mission's
+/// ground sampling distance. The document must have passed check_photo().
 void complete_photo(MissionDocument& document, const geometry::PhotoCameraConfig& camera);
 
-/// The photos of a complete document with a photo camera.
+/// Returns the photo options of a complete document with a photo camera.
 PhotoSetup photo_setup(const MissionDocument& document);
 
 }  // namespace skycap::missions::config

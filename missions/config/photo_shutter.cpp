@@ -6,7 +6,7 @@ namespace skycap::missions::config {
 namespace {
 
 struct Payload {
-  std::string_view prefix;  ///< of the preset's name
+  std::string_view prefix;  ///< Prefix of the preset's name.
   int code;
 };
 
@@ -22,7 +22,7 @@ constexpr std::array payloads{
 
 std::optional<int> wpml_payload(std::string_view camera) {
   if (camera.starts_with("dji_")) camera.remove_prefix(4);
-  // The whole first words of the name: "m30" is not a beginning of "m30t_wide".
+  // Whole words are compared: "m30" does not match "m30t_wide".
   for (const Payload& payload : payloads) {
     if (!camera.starts_with(payload.prefix)) continue;
     const std::string_view rest = camera.substr(payload.prefix.size());
@@ -36,7 +36,7 @@ flight::PhotoShutter make_photo_shutter(const geometry::PhotoCameraConfig& camer
                                .exposure = camera.exposure,
                                .readout = camera.readout,
                                .min_interval = camera.min_interval};
-  // The first kind is the one that is planned for.
+  // The plan uses the first image type.
   if (!camera.formats.empty()) shutter.image_format = camera.formats.front();
   shutter.payload = wpml_payload(camera.name).value_or(0);
   return shutter;

@@ -1,4 +1,4 @@
-/// The photo camera of a mission as far as the flight depends on it.
+/// Camera data of a photo mission that the flight depends on.
 #pragma once
 
 #include <optional>
@@ -9,13 +9,13 @@
 
 namespace skycap::missions::config {
 
-/// payloadEnumValue of DJI's WPML for a camera by the name of its preset, such as
-/// "zenmuse_p1_35"; nothing for cameras of other makers. Source: DJI Cloud API documentation,
-/// "Product Support" and "Common Elements".
+/// Returns the payloadEnumValue of DJI's WPML for a camera preset such as "zenmuse_p1_35", or
+/// nullopt for cameras of other makers. Source: DJI Cloud API documentation, "Product Support" and
+/// "Common Elements".
 std::optional<int> wpml_payload(std::string_view camera);
 
-/// The camera as far as the flight depends on it, for photos with that ground sampling distance
-/// [m].
+/// Returns the camera data that the flight depends on, for photos with ground sampling distance
+/// `gsd` [m].
 flight::PhotoShutter make_photo_shutter(const geometry::PhotoCameraConfig& camera, double gsd);
 
 }  // namespace skycap::missions::config

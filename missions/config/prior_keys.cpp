@@ -69,7 +69,8 @@ Key vertical_key() {
     if (!stored) return std::nullopt;
     return names[static_cast<std::size_t>(*stored)];
   };
-  return otherwise("from the coordinate reference system; without one the mission frame", key);
+  return otherwise("that of the coordinate reference system, if any; otherwise the mission frame",
+                   key);
 }
 
 Key up_axis_key() {
@@ -144,7 +145,8 @@ std::vector<Key> source_pose_keys() {
           "Role in the survey. target: the object to survey; predicted surface where it is not "
           "measured yet. obstacle: every leg avoids it. terrain: the ground. truth: ground truth "
           "for the simulated sensor, instead of scene.model. No role marks space as free.")),
-      optional_text_key("crs", "from the file; without one the mission frame", source(&Source::crs),
+      optional_text_key("crs", "that of the file, if any; otherwise the mission frame",
+                        source(&Source::crs),
                         "Coordinate reference system, horizontal or compound, for example "
                         "EPSG:25832+7837; all systems that PROJ supports."),
       vertical_key(),

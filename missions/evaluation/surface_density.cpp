@@ -19,9 +19,9 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 
 constexpr double max_places = 1e6;
-constexpr std::uint64_t places_seed = 3;  ///< other places than those that coverage is asked at
+constexpr std::uint64_t places_seed = 3;  ///< Differs from the seed of the coverage samples.
 
-/// Steeper than 45 degrees is a wall.
+/// Returns the class of a normal. Surfaces steeper than 45 degrees are walls.
 SurfaceClass read_class(const Vector3f& normal) {
   constexpr float level = 0.70710678F;
   if (std::abs(normal.z()) <= level) return SurfaceClass::wall;
@@ -69,7 +69,7 @@ class Tiff {
     entries_.push_back({tag, type, static_cast<std::uint32_t>(values.size()), std::move(bytes)});
   }
 
-  /// `image` follows the directory and what does not fit into it.
+  /// Returns the file: directory, values that do not fit into it, and `image`.
   std::string bytes(std::uint16_t strip_offset_tag, const std::string& image) {
     constexpr std::uint32_t head = 8, entry_size = 12;
     add<std::uint32_t>(strip_offset_tag, u32, {0});
@@ -125,7 +125,7 @@ class Tiff {
   std::vector<Entry> entries_;
 };
 
-/// Row by row, the matrix that leads from columns and rows to coordinates.
+/// Returns the matrix from columns and rows to coordinates, row by row.
 std::vector<double> model_transformation(const Vector2d& origin, const Vector2d& per_column,
                                          const Vector2d& per_row) {
   return {per_column.x(),
@@ -197,7 +197,8 @@ DensityMeter::DensityMeter(DensityPlaces positions, double radius, unsigned thre
   for (std::size_t i = 0; i < areas_.size(); ++i) {
     near.clear();
     grid_.find_within(positions_.positions[i], radius_, near);
-    std::ranges::sort(near, {}, &geometry::Neighbour::index);  // sums in the same order everywhere
+    std::ranges::sort(
+        near, {}, &geometry::Neighbour::index);  // The same order of summation on all platforms.
     for (const geometry::Neighbour& other : near) areas_[i] += positions_.areas[other.index];
   }
 }
@@ -267,7 +268,7 @@ void DensityRaster::add(std::span<const Vector3f> points) {
     const double column = std::floor((double{point.x()} - north_west_.x()) / cell_);
     const double row = std::floor((north_west_.y() - double{point.y()}) / cell_);
     const bool is_inside = column >= 0.0 && row >= 0.0 && column < static_cast<double>(columns_) &&
-                           row < static_cast<double>(rows_);  // not of NaN
+                           row < static_cast<double>(rows_);  // False for NaN.
     if (!is_inside) continue;
     ++counts_[static_cast<std::size_t>(row) * columns_ + static_cast<std::size_t>(column)];
   }
@@ -281,8 +282,9 @@ std::string DensityRaster::geotiff(const std::optional<flight::Site>& site) cons
     Tiff::append(image, static_cast<float>(count / (cell_ * cell_)));
   }
   Vector2d origin = north_west_, per_column(cell_, 0.0), per_row(0.0, -cell_);
-  // GeoTIFF keys: version 1.1.0; each key's number, where its value is (0: here), count, value.
-  std::vector<std::uint16_t> keys{1, 1, 0, 1, 1025, 0, 1, 1};  // a cell's value is of its area
+  // GeoTIFF keys, version 1.1.0. Each entry has the key's number, the location of its value (0: in
+  // this entry), count and value.
+  std::vector<std::uint16_t> keys{1, 1, 0, 1, 1025, 0, 1, 1};  // RasterPixelIsArea.
   if (site) {
     const flight::UtmProjection utm(*site);
     const auto to_map = [&](double column, double row) -> Vector2d {

@@ -1,5 +1,5 @@
-/// How densely a cloud covers a surface, from all of its points: points for each square metre of
-/// surface around places of it, and of the plan in a raster.
+/// Point density of a cloud: points per square metre of surface around sample positions, and per
+/// square metre of the map in a raster. All points of the cloud are counted.
 #pragma once
 
 #include <array>
@@ -20,57 +20,60 @@
 
 namespace skycap::missions::evaluation {
 
-/// Kinds of surface, by their normals and by what they belong to.
+/// Surface classes, by normal and by the object that the surface belongs to.
 enum class SurfaceClass { roof, wall, underside, ground };
 inline constexpr std::array surface_classes{SurfaceClass::roof, SurfaceClass::wall,
                                             SurfaceClass::underside, SurfaceClass::ground};
 const char* to_string(SurfaceClass of);
 
-/// Places that stand for equal or unequal parts of a surface.
+/// Sample positions on a surface. Each represents a part of its area.
 struct DensityPlaces {
   std::vector<Eigen::Vector3f> positions;
-  std::vector<double> areas;  ///< that each stands for [m^2]
+  std::vector<double> areas;  ///< Area that each position represents [m^2].
   std::vector<SurfaceClass> classes;
 };
 
-/// Of a model, about one in a square of `spacing`, and of what stands `surroundings` it within
-/// `margin` of its bounding box, level parts of which are ground and others are left out. At most a
-/// million of each.
+/// Samples a model and its surroundings with about one position per square of side `spacing` [m],
+/// at most one million each. Surroundings are sampled only within `margin` [m] of the model's
+/// bounding box, and only surface that faces up with a slope below 45 degrees. These samples have
+/// the class ground.
 DensityPlaces density_places(const geometry::Mesh& model, const geometry::Mesh& surroundings,
                              double spacing, double margin);
 
-/// Lower bounds of the histogram's bins [points per m^2]; the first is zero, the last has no upper
-/// bound.
+/// Lower bounds of the histogram's bins [points per m^2]. The last bin has no upper bound.
 inline constexpr std::array density_bins{0.0,   1.0,   2.0,   5.0,    10.0,   20.0,   50.0,
                                          100.0, 200.0, 500.0, 1000.0, 2000.0, 5000.0, 10000.0};
 
-/// Of all surface, or of one class.
+/// Density figures of the whole surface or of one class.
 struct DensityFigures {
-  double area = 0.0;          ///< [m^2]
-  double mean = 0.0;          ///< [points per m^2], as all below
-  double percentile_5 = 0.0;  ///< a twentieth of the area has less
+  double area = 0.0;          ///< Area of the surface [m^2].
+  double mean = 0.0;          ///< Mean density [points per m^2].
+  double percentile_5 = 0.0;  ///< Density that 95% of the area reaches [points per m^2].
   double median = 0.0;
-  double share = 0.0;  ///< of the area that has at least the density asked for
-  std::array<double, density_bins.size()> histogram{};  ///< shares of the area
+  double share = 0.0;  ///< Fraction of the area with at least the required density.
+  std::array<double, density_bins.size()> histogram{};  ///< Fractions of the area by bin.
 };
 
-/// Counts points around places.
+/// Counts points in the neighbourhood of sample positions.
 class DensityMeter {
  public:
-  /// `radius` is how far around a place points and surface are counted [m].
+  /// `radius` is the distance from a position within which points and surface are counted [m].
+  /// `threads` 0: all processors.
   DensityMeter(DensityPlaces positions, double radius, unsigned threads = 0);
 
   void add(std::span<const Eigen::Vector3f> points);
 
-  /// For each place, points within the radius of it over the area of surface within it [1/m^2].
+  /// Returns the density at each position: number of points within the radius divided by the area
+  /// of surface within it [1/m^2].
   std::vector<double> densities() const;
-  /// For each place, points within the radius of it.
+  /// Returns the number of points within the radius of each position.
   std::vector<std::uint64_t> counts() const { return counts_; }
   const DensityPlaces& positions() const { return positions_; }
 
-  /// Of all surface but the ground; nothing if there is none.
+  /// Returns the figures of all surface except ground, or nullopt if all surface is ground. `asked`
+  /// is the required density [points per m^2].
   std::optional<DensityFigures> figures(double asked) const;
-  /// Of one class; nothing if there is none.
+  /// Returns the figures of one class, or nullopt if the class has no surface.
   std::optional<DensityFigures> figures(double asked, SurfaceClass of) const;
 
  private:
@@ -78,27 +81,29 @@ class DensityMeter {
   double radius_;
   unsigned threads_;
   geometry::PointGrid grid_;
-  std::vector<double> areas_;  ///< of surface within the radius
+  std::vector<double> areas_;  ///< Area of surface within the radius of each position [m^2].
   std::vector<std::uint64_t> counts_;
 };
 
-/// Points by cells of the plan.
+/// Number of points in each cell of a horizontal grid.
 class DensityRaster {
  public:
-  /// Square cells of `cell` metres that cover the box of the mission's frame; the last ones may
-  /// reach beyond it. Throws Error{bad_config} if they are none, or more than 100 million.
+  /// Creates square cells with side `cell` [m] that cover the box in the mission frame. The last
+  /// row and column may extend beyond the box. Throws Error{bad_config} if the grid has no cells or
+  /// more than 100 million.
   DensityRaster(const Eigen::AlignedBox2d& box, double cell);
 
   void add(std::span<const Eigen::Vector3f> points);
 
   std::size_t columns() const { return columns_; }
   std::size_t rows() const { return rows_; }
-  /// Row by row from the north, and in each from the west.
+  /// Returns the counts row by row from north to south, each row from west to east.
   const std::vector<std::uint32_t>& counts() const { return counts_; }
 
-  /// A GeoTIFF of one band of 32-bit floats, points per square metre of the plan. With a site its
-  /// cells are placed in UTM by a ModelTransformation, which turns them by the convergence of the
-  /// meridians; else they have coordinates of the mission's frame and no reference system.
+  /// Returns a GeoTIFF with one band of 32-bit floats: points per square metre of horizontal area.
+  /// With a site, a ModelTransformation maps the cells to UTM, rotated by the convergence of the
+  /// meridians. Without a site, coordinates are in the mission frame, without a coordinate
+  /// reference system.
   std::string geotiff(const std::optional<flight::Site>& site) const;
 
  private:

@@ -25,7 +25,7 @@ using Eigen::AlignedBox2d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// What fits on the page besides the map; the rest is counted.
+/// Maximum number of entries on the page next to the map. Further entries are only counted.
 constexpr std::size_t max_sorties = 8, max_holes = 5, max_warnings = 3, max_dots = 2500;
 
 constexpr double map_width = 186.0, map_height = 80.0;  ///< [mm]
@@ -75,7 +75,7 @@ std::string escaped(std::string_view text) {
 
 std::string percent_text(double share) { return fmt::format("{:.1f} %", 100.0 * share); }
 
-/// A route of the mission: the one vehicle's, or one of the fleet's.
+/// Route of the single vehicle or of one vehicle of the fleet.
 struct VehicleRoute {
   const flight::Route* route;
   const FlightFiles* files;
@@ -90,7 +90,7 @@ std::vector<VehicleRoute> list_routes(const SurveyMission& mission) {
   return all;
 }
 
-/// North up, with everything that is flown and the surface to be surveyed.
+/// Map with north up, all routes and the surface to be surveyed.
 class Map {
  public:
   Map(const FieldSheetSite& site, const flight::FlightOptions& options,
@@ -172,7 +172,7 @@ class Map {
                         escaped(text));
   }
 
-  /// Evenly few of the places: dark where covered, red where not.
+  /// Draws an even subset of the positions: dark if covered, red if uncovered.
   void add_surface() {
     const std::size_t step = site_.surface.size() / max_dots + 1;
     for (const bool is_covered : {true, false}) {
@@ -219,7 +219,7 @@ class Map {
     add_text(point + Vector2d(2.4, 1.0), name);
   }
 
-  /// A bar of a round length, and north.
+  /// Draws a scale bar of a round length and a north arrow.
   void add_scale() {
     constexpr double longest = 40.0;
     double length = 1.0;
@@ -247,7 +247,7 @@ std::string figure(const std::string& value, const std::string& name) {
   return "<div><b>" + escaped(value) + "</b>" + escaped(name) + "</div>\n";
 }
 
-/// "6 sorties" or "2 vehicles, 6 sorties".
+/// Returns text such as "6 sorties" or "2 vehicles, 6 sorties".
 std::string batteries_text(const std::vector<VehicleRoute>& all) {
   std::size_t sorties = 0;
   for (const VehicleRoute& vehicle_route : all) sorties += vehicle_route.route->sorties.size();
@@ -319,7 +319,7 @@ std::string sorties_table(const SurveyMission& mission) {
     }
   }
   html += "</table>\n";
-  if (all > number) html += fmt::format("<p>{} more: summary.json</p>\n", all - number);
+  if (all > number) html += fmt::format("<p>{} more: see summary.json</p>\n", all - number);
   return html;
 }
 
@@ -347,7 +347,7 @@ std::vector<std::string> shortened(std::vector<std::string> items, std::size_t m
   return items;
 }
 
-/// "12 m2 at (3, 4, 5), unobserved".
+/// Returns text such as "12 m2 at (3, 4, 5), unobserved".
 std::vector<std::string> missing_items(const SurveyMission& mission) {
   if (!mission.written) return {};
   const MissingSurface& missing = mission.written->parts.front().missing;

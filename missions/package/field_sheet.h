@@ -1,5 +1,5 @@
-/// One printable page for the crew on site: map, pad, return altitude, steps, sorties and
-/// batteries, what to check, and what will be missing.
+/// Printable page for the crew on site: map, pad, return altitude, steps, sorties, batteries,
+/// checks, and the surface that will remain uncovered.
 #pragma once
 
 #include <span>
@@ -14,22 +14,22 @@
 
 namespace skycap::missions::package {
 
-/// The file of a package that holds it.
+/// Name of the file in a mission package.
 inline constexpr const char* field_sheet_name = "field_sheet.html";
 
-/// What the sheet says of a mission besides its flight.
+/// Content of the sheet that does not depend on the flight.
 struct FieldSheetSite {
-  std::string mission;  ///< its name
-  std::string sensor;   ///< for people
+  std::string mission;  ///< Name of the mission.
+  std::string sensor;   ///< Sensor name for display.
   double survey_coverage = 0.0;
-  /// Places of the surface to be surveyed; from all of them the map is drawn. May be empty.
+  /// Sample positions on the surface to be surveyed, for the map. May be empty.
   std::span<const Eigen::Vector3f> surface{};
-  /// For each of them, 1 if the survey covers it; what the files cover is taken instead where that
-  /// is known. May be empty.
+  /// For each sample position, 1 if the survey covers it. The coverage of the written files is used
+  /// instead if it is known. May be empty.
   std::span<const std::uint8_t> is_covered{};
 };
 
-/// A page of HTML without scripts or other files, for A4. The mission must have a route.
+/// Returns an HTML page for A4 without scripts or external files. The mission must have a route.
 std::string field_sheet(const FieldSheetSite& site, const flight::FlightOptions& options,
                         const SurveyMission& mission);
 

@@ -50,8 +50,9 @@ std::string fleet_text(const FleetMission& fleet, bool is_verbose) {
       fleet.members.size(), fleet.makespan / 60.0, fleet.total_flight_time / 60.0);
   if (is_verbose) {
     text += fmt::format(
-        "            excess over the lower bounds: {:.1f}% and {:.1f}% with similar legs, {:.1f}% "
-        "and {:.1f}% with any legs\n",
+        "            optimality gap: makespan {:.1f}%, total flight time {:.1f}% (bound for the "
+        "verified "
+        "legs); makespan {:.1f}%, total flight time {:.1f}% (bound for arbitrary legs)\n",
         gap(fleet.makespan, fleet.bound.makespan),
         gap(fleet.total_flight_time, fleet.bound.total_flight_time),
         gap(fleet.makespan, fleet.lower_bound.makespan),

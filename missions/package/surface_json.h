@@ -1,4 +1,4 @@
-/// Coverage of targets and what is missing of a surface, as summary.json has them.
+/// JSON objects of summary.json for the coverage of targets and for missing surface.
 #pragma once
 
 #include <vector>
@@ -10,10 +10,11 @@
 
 namespace skycap::missions::package {
 
-/// `known_by` is "planner" or "simulator": whose pieces of surface they are.
+/// Returns the missing surface as JSON. `known_by` is the source of the surface: "planner" or
+/// "simulator".
 nlohmann::ordered_json missing_json(const MissingSurface& missing, const char* known_by);
 
-/// By object of the targets, and by kind of surface.
+/// Returns the coverage of each target object, divided by kind of surface.
 nlohmann::ordered_json targets_json(const std::vector<TargetCoverage>& targets);
 
 }  // namespace skycap::missions::package

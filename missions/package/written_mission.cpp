@@ -21,7 +21,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using session::ViewInFlight;
 
-/// Rounding of positions by formats, there and back [m], and of directions: Litchi has whole
+/// Tolerances for the rounding of positions [m] and directions in files. Litchi stores whole
 /// degrees.
 constexpr double same_position = 2.0 * flight::rounding_bound;
 constexpr double same_direction = 1.0 * geometry::radians_per_degree;
@@ -48,8 +48,8 @@ geometry::View to_view(const flight::InterpretedStop& capture) {
                                      geometry::radians_per_degree * capture.pitch_deg})};
 }
 
-/// The capture that is meant to be of this view: the one nearest in direction of those that are
-/// where it is.
+/// Returns the capture that belongs to this view: of all captures at its position, the one with the
+/// closest direction.
 std::optional<geometry::View> make_capture(const geometry::View& view,
                                            const std::vector<flight::InterpretedStop>& captures) {
   std::optional<geometry::View> nearest;
@@ -65,7 +65,7 @@ std::optional<geometry::View> make_capture(const geometry::View& view,
   return nearest;
 }
 
-/// One or more formats and what their files measure.
+/// One or more formats with the measurements of their files.
 struct WrittenPart {
   std::vector<std::string> files;
   std::size_t views = 0;
@@ -104,7 +104,8 @@ void add(WrittenPart part, std::vector<WrittenPart>& parts) {
   }
 }
 
-/// All vehicles' files, each in the format that its own autopilot flies, or else in its first one.
+/// Returns the files of all vehicles. Each vehicle has the format of its autopilot or else its
+/// first format.
 WrittenPart fleet_part(const FleetMission& fleet) {
   WrittenPart all;
   for (const FleetMember& member : fleet.members) {
@@ -156,7 +157,7 @@ WrittenCoverage compute_target_coverage(const evaluation::SimulationOptions& sim
           covered.stored};
 }
 
-/// The names without the sorties' numbers: "mission-*.plan".
+/// Returns the names without the sorties' numbers, such as "mission-*.plan".
 std::string names_text(const std::vector<std::string>& files) {
   std::vector<std::string> names;
   for (const std::string& file : files) {

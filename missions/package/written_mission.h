@@ -1,6 +1,6 @@
-/// What the written route files cover, by a simulated re-flight of what each of them says. The
-/// survey's own coverage differs: views may have no verified return, and a format may fly past
-/// views that another one stops at.
+/// Coverage of the written route files, by a simulated re-flight of each file. It differs from the
+/// survey's coverage: views may have no verified return, and a format may fly past views at which
+/// another one stops.
 #pragma once
 
 #include <cstddef>
@@ -22,38 +22,40 @@
 
 namespace skycap::missions::package {
 
-/// Of the files of one or more formats, which capture the same: their sorties together.
+/// Coverage of all sorties in the files of one or more formats with identical captures.
 struct WrittenCoverage {
-  std::vector<std::string> files;          ///< names
-  std::size_t views = 0;                   ///< that they capture; of a scanner in flight: pass
-  ReflightCoverage again;                  ///< from an empty cloud
-  std::vector<TargetCoverage> targets;     ///< as target_coverage()
-  MissingSurface missing;                  ///< as the simulator knows the surface
-  std::vector<std::uint8_t> is_covered{};  ///< 1 for each covered sample of the surface
+  std::vector<std::string> files;  ///< File names.
+  std::size_t views = 0;   ///< Captured views, or passed views if the scanner measures in flight.
+  ReflightCoverage again;  ///< Result of the re-flight, starting with an empty cloud.
+  std::vector<TargetCoverage> targets;  ///< Result of target_coverage().
+  MissingSurface missing;               ///< Uncovered surface according to the simulator.
+  std::vector<std::uint8_t>
+      is_covered{};  ///< 1 for each covered sample of the surface, otherwise 0.
 };
 
 struct WrittenMission {
-  std::size_t planned = 0;  ///< views of the survey, or the replanned ones
+  std::size_t planned = 0;  ///< Number of views of the survey, or of the replanned mission.
   std::vector<WrittenCoverage> parts;
 };
 
-/// What the written files of a format measure, in the order flown. Poses of captures are those that
-/// were read back from the files; a view that no file captures is not among them. Formats that
-/// command no camera are taken to capture at the route's views, scanners to measure all the way.
+/// Returns the views captured by the written files of a format, in flight order. Captures have the
+/// poses read from the files. A view without a capture in the files is not contained. If the format
+/// has no camera commands, all views of the route are assumed captured. Scanners are assumed to
+/// measure along the whole route.
 std::vector<session::ViewInFlight> written_views(const flight::FlightOptions& options,
                                                  const flight::Route& route,
                                                  const FlightFiles& files, flight::Format format);
 
-/// Of the mission's files, and of its fleet's; null where views cannot be flown again, where there
-/// is no file, or once `stop` is requested.
+/// Returns the coverage of the files of the mission and of its fleet. Returns null if the views
+/// cannot be simulated again, if no file was written, or after a stop request through `stop`.
 std::shared_ptr<const WrittenMission> written_mission(
     const evaluation::SimulationOptions& simulation, const CoverageFigures& coverage,
     const SurveyMission& mission, const std::stop_token& stop);
 
-/// `flight.written` of the summary.
+/// Returns the content of `flight.written` in summary.json.
 nlohmann::ordered_json written_json(const WrittenMission& mission);
 
-/// What the program prints.
+/// Returns the lines that the program prints.
 std::string written_text(const WrittenMission& mission);
 
 }  // namespace skycap::missions::package

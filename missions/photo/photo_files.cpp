@@ -28,7 +28,7 @@ using survey::photo::PhotoFigures;
 /// [rad].
 constexpr double angle_sigma = geometry::radians_per_degree;
 
-/// Counts and shares of surface samples.
+/// Returns counts and fractions of surface samples.
 Json figures_json(const PhotoFigures& figures) {
   const auto share = [&](std::size_t count) {
     return Json{{"samples", count},

@@ -1,4 +1,4 @@
-/// The results of a photo mission on disk.
+/// Result files of a photo mission.
 #pragma once
 
 #include <filesystem>
@@ -18,12 +18,13 @@ photos::PoseSigmas pose_sigmas(const config::MissionSetup& setup);
 void write_colmap_model(const config::MissionSetup& setup, const PhotoMission& mission,
                         const std::filesystem::path& folder);
 
-/// summary.json with the section `photo`, as docs/reference/results.md describes it.
+/// Returns the text of summary.json with the section `photo`, as documented in
+/// docs/reference/results.md.
 std::string summary_json(const config::MissionSetup& setup, const PhotoMission& mission);
 
-/// Stages summary.json, photos.csv, with a georeference geo.txt for OpenDroneMap, and, with a
-/// vehicle, the route files and free_space.bin, in which they are verified again by skycap export;
-/// the caller commits. Files and their notes are kept in `mission`.
+/// Stages summary.json, photos.csv, with a georeference geo.txt, and, with a vehicle, the route
+/// files and free_space.bin. `skycap export` verifies routes against free_space.bin. The caller
+/// commits the folder. Stores the files and their notes in `mission`.
 void stage_photo_mission(const config::MissionSetup& setup, const PhotoAirspace& airspace,
                          PhotoMission& mission, geometry::OutputFolder& folder);
 

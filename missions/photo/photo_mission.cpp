@@ -20,7 +20,7 @@ namespace {
 using Eigen::Vector3d;
 using geometry::View;
 
-/// The time from one photo to the next, and at it.
+/// Returns the time from one photo to the next, including the stop [s].
 double time_between(const flight::Motion& motion, double rest, const View& from, const View& to) {
   const double yaw =
       std::remainder(flight::compute_yaw(to) - flight::compute_yaw(from), 2.0 * std::numbers::pi);
@@ -48,7 +48,7 @@ PhotoTour compute_tour(const flight::FlightOptions& options, const std::vector<V
   return tour;
 }
 
-/// Where photos may be, less the positions that no route reaches.
+/// Space for photos, without the positions that no route reaches.
 survey::photo::FreePosition less_unreached(const PhotoAirspace& airspace,
                                            const std::vector<Vector3d>& unreached, double near) {
   return [&airspace, unreached, near](const Vector3d& position) {
@@ -60,7 +60,7 @@ survey::photo::FreePosition less_unreached(const PhotoAirspace& airspace,
 
 std::string name_of_photo(std::size_t number) { return fmt::format("photo_{:04}", number + 1); }
 
-/// A photo with the figures that the plan has of it.
+/// Returns a photo with its figures from the plan.
 survey::photo::PlannedPhoto make_photo(const survey::photo::PhotoPlanResult& result,
                                        std::size_t view, std::size_t number) {
   survey::photo::PlannedPhoto photo;
@@ -73,7 +73,7 @@ survey::photo::PlannedPhoto make_photo(const survey::photo::PhotoPlanResult& res
   return photo;
 }
 
-/// The photos of a route in the order flown, with their times.
+/// Returns the photos of a route in flight order, with their times.
 std::vector<survey::photo::PlannedPhoto> flown_photos(const config::MissionSetup& setup,
                                                       const PhotoMission& mission) {
   const flight::FlightOptions& options = setup.flight();
@@ -93,7 +93,7 @@ std::vector<survey::photo::PlannedPhoto> flown_photos(const config::MissionSetup
   return photos;
 }
 
-/// The photos of a plan without a vehicle, along a short tour.
+/// Returns the photos of a plan without a vehicle, along a short tour.
 std::vector<survey::photo::PlannedPhoto> toured_photos(
     const survey::photo::PhotoPlanResult& result) {
   std::vector<std::uint32_t> order;
@@ -143,7 +143,7 @@ void plan_route(const config::MissionSetup& setup, const PhotoAirspace& airspace
       package::plan_flight(options, airspace.measured(), mission.pad, views, paths, {}, stop);
 }
 
-/// How many of the photos, the most useful first, a tour within the time takes at most.
+/// Returns the maximum number of photos, most useful first, in a tour within the available time.
 std::size_t photos_within(const flight::FlightOptions& options, const std::vector<View>& views,
                           double seconds) {
   std::size_t enough = views.size() + 1, fits = 0;
@@ -156,7 +156,7 @@ std::size_t photos_within(const flight::FlightOptions& options, const std::vecto
   return fits;
 }
 
-/// The plan, with fewer photos where limits.max_minutes asks for it.
+/// Returns the plan, with fewer photos if limits.max_minutes requires it.
 survey::photo::PhotoPlanResult plan_within_limits(const config::MissionSetup& setup,
                                                   survey::photo::PhotoPlanOptions options,
                                                   const survey::photo::PhotoSite& site,

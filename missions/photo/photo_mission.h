@@ -1,4 +1,4 @@
-/// A mission of photos: the plan, and the verified flight through it.
+/// Photo mission: plan of photos and verified route through them.
 #pragma once
 
 #include <cstddef>
@@ -18,37 +18,39 @@
 
 namespace skycap::missions::photo {
 
-/// A closed tour through photos, straight and with a stop at each: to compare sets of photos.
+/// Closed tour through photos with straight legs and a stop at each photo, for the comparison of
+/// sets of photos.
 struct PhotoTour {
-  double length = 0.0;    ///< [m]
-  double duration = 0.0;  ///< [s]; without the way from and to the pad; 0 without a vehicle
+  double length = 0.0;  ///< Length [m].
+  double duration =
+      0.0;  ///< Duration without the legs from and to the pad [s]. 0 without a vehicle.
 };
 
-/// A pattern with its tours.
+/// Tours of a pattern.
 struct PatternTours {
   PhotoTour whole, pruned;
 };
 
 struct PhotoMission {
   survey::photo::PhotoPlanResult result;
-  survey::photo::PhotoPlan plan;  ///< the photos that are flown to, in the order of the flight
+  survey::photo::PhotoPlan plan;  ///< Photos of the route, in flight order.
   /// Pairs of plan.photos to be matched, see PhotoPlanResult::matching_pairs.
   std::vector<survey::photo::PhotoPair> pairs;
-  PhotoTour tour;                                ///< of the plan
-  std::vector<PatternTours> patterns;            ///< of result.patterns
-  std::optional<package::SurveyMission> flight;  ///< with a vehicle
+  PhotoTour tour;                                ///< Tour of the plan.
+  std::vector<PatternTours> patterns;            ///< Tours of result.patterns.
+  std::optional<package::SurveyMission> flight;  ///< Flight, if the mission has a vehicle.
   Eigen::Vector3d pad = Eigen::Vector3d::Zero();
-  std::vector<std::string> warnings;  ///< sentences for the user; the first thing to be read
+  std::vector<std::string> warnings;  ///< Warnings for the user, displayed first.
 };
 
-/// The sentence that results of a mission carry which assumes free space.
+/// Warning in the results of a mission that assumes free space.
 inline constexpr const char* assumed_space_warning =
     "the airspace around the model is assumed free. Check it for trees, wires and anything that "
     "the model does not contain.";
 
-/// Plans photos and the route through them, verified at the clearance against prior data. Photos
-/// that the route cannot reach are replaced by others, up to twice. Throws what plan_photos() and
-/// plan_flight() throw. `report` is told what is being done.
+/// Plans photos and the route through them, verified at the clearance against prior data. Replaces
+/// photos that the route cannot reach, up to twice. Throws the same errors as plan_photos() and
+/// plan_flight(). `report` receives progress messages.
 PhotoMission plan_photo_mission(const config::MissionSetup& setup, const PhotoAirspace& airspace,
                                 const std::stop_token& stop,
                                 const std::function<void(const std::string&)>& report);

@@ -24,7 +24,7 @@ std::string split_words(MissingReason reason) {
     case MissingReason::height:
       return "seen only from below the minimum height";
     case MissingReason::not_taken:
-      return "attainable, at too many photos for its area";
+      return "attainable, but requires too many photos for its area";
   }
   return "";
 }
@@ -81,7 +81,7 @@ std::string plan_text(const config::MissionSetup& setup, const PhotoMission& mis
                       percent(result.figures.attainable_share(result.figures.satisfied)));
   text += missing_text(result);
   if (result.bound.photos > 0) {
-    text += fmt::format("  bound     at least {} photos for the same samples ({:.0f}% less)\n",
+    text += fmt::format("  bound     at least {} photos for the same samples ({:.0f}% fewer)\n",
                         result.bound.photos,
                         100.0 - 100.0 * static_cast<double>(result.bound.photos) /
                                     static_cast<double>(result.repaired_photos));

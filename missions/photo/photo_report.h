@@ -8,10 +8,11 @@
 
 namespace skycap::missions::photo {
 
-/// The plan with what will be missing and the patterns beside it, some lines; without the flight.
+/// Returns some lines about the plan, the missing surface, and the patterns compared with the plan.
+/// The flight is not included.
 std::string plan_text(const config::MissionSetup& setup, const PhotoMission& mission);
 
-/// A line "Warning: ..." for each warning.
+/// Returns a line "Warning: ..." for each warning.
 std::string warnings_text(const PhotoMission& mission);
 
 }  // namespace skycap::missions::photo

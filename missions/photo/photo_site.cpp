@@ -10,7 +10,7 @@ using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 using site_data::Role;
 
-/// Obstacles farther from a target than this many view distances hide nothing of it.
+/// Obstacles more than this number of view distances from a target are not considered as occluders.
 constexpr double surroundings_reach = 3.0;
 
 geometry::Mesh select_targets(const config::MissionSetup& setup) {
@@ -46,8 +46,8 @@ geometry::Mesh make_walls(const config::MissionSetup& setup) {
 flight::MeasuredSpaceConfig space_config(const config::MissionSetup& setup) {
   flight::MeasuredSpaceConfig config = setup.flight().measured_space();
   if (setup.document->flight.free_space == config::FreeSpaceRule::measured) return config;
-  // An empty region would be all of space. A voxel in the ground, where no flight can be, stands
-  // for none.
+  // An empty region would mean all of space. Instead, the region is a single voxel in the ground,
+  // where no flight is possible.
   const Vector3d centre = setup.flight().unknown_box.center();
   constexpr double depth = 3.0;
   const Vector3d buried(centre.x(), centre.y(), setup.flight().airspace.ground_height - depth);
@@ -70,7 +70,8 @@ bool PhotoAirspace::is_free(const Vector3d& position) const {
   constexpr double rounding = 1e-6;
   if (walls_.distance(position) < min_standoff - rounding) return false;
   if (!setup_.flight().has_vehicle()) return true;
-  // A little more than legs are verified at, so that a path to the position can end there.
+  // The distance is slightly larger than the verified clearance of legs, so that a path to the
+  // position can end there.
   constexpr double margin = 0.01;
   return space_.is_free({position, position}, setup_.flight().budget().total() + margin);
 }

@@ -1,5 +1,4 @@
-/// The target of a photo mission with its surroundings, and the space that photos may be taken in:
-/// all from prior data.
+/// Target and surroundings of a photo mission, and the space for photos, from prior data only.
 #pragma once
 
 #include <functional>
@@ -16,20 +15,22 @@
 
 namespace skycap::missions::photo {
 
-/// The airspace of a photo mission. Safe to query from several threads.
+/// Airspace of a photo mission. Thread-safe for queries.
 class PhotoAirspace {
  public:
-  /// Keeps a reference to `setup`, whose document has a photo camera.
+  /// Keeps a reference to `setup`, whose document must have a photo camera.
   PhotoAirspace(const config::MissionSetup& setup, unsigned threads);
   PhotoAirspace(const PhotoAirspace&) = delete;
   PhotoAirspace& operator=(const PhotoAirspace&) = delete;
 
-  /// Whether a photo may be taken there: at the stand-off from all prior surfaces, and with a
-  /// vehicle at the clearance from all that is not free.
+  /// Returns true if a photo may be taken at a position. The position must be at least the
+  /// stand-off from all prior surfaces. With a vehicle, it must also be at least the clearance from
+  /// all space that is not free.
   bool is_free(const Eigen::Vector3d& position) const;
 
-  /// Space as a photo mission knows it, which measures none: with flight.free_space: assumed, free
-  /// everywhere; else outside of the unknown boxes. Prior data and rules apply in addition.
+  /// Returns the space assumed as measured, because a photo mission measures none. With
+  /// flight.free_space: assumed, all space is free. Otherwise all space outside the unknown boxes
+  /// is free. Prior data and rules apply in addition.
   const flight::MeasuredSpace& measured() const { return measured_; }
 
  private:
@@ -40,8 +41,8 @@ class PhotoAirspace {
   flight::JointSpace space_;
 };
 
-/// The target and its surroundings. `airspace` must outlive it. Throws Error{bad_config} if the
-/// targets have no surface.
+/// Returns the target and its surroundings. `airspace` must outlive the result. Throws
+/// Error{bad_config} if the targets have no surface.
 survey::photo::PhotoSite photo_site(const config::MissionSetup& setup,
                                     const PhotoAirspace& airspace);
 

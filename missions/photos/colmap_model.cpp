@@ -18,7 +18,7 @@ using survey::photo::PhotoPlan;
 
 constexpr int decimals = 9;
 
-/// Indices of the photos in the order of their image names, which COLMAP counts them in.
+/// Returns the indices of the photos in the order of their image names, which is COLMAP's order.
 std::vector<std::uint32_t> by_name(const PhotoPlan& plan) {
   std::vector<std::uint32_t> order(plan.photos.size());
   std::iota(order.begin(), order.end(), 0U);
@@ -102,7 +102,7 @@ std::string colmap_priors(const PhotoPlan& plan, const PoseSigmas& sigmas,
 }
 
 std::string colmap_script(const PhotoPlan& plan, const PoseSigmas& sigmas) {
-  // Three standard deviations in each axis.
+  // Three standard deviations per axis.
   const std::string max_error = fixed(3.0 * std::sqrt(3.0) * sigmas.position, 3);
   const std::vector<std::string> lines{
       "#!/bin/sh",

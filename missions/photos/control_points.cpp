@@ -15,9 +15,10 @@ namespace {
 using flight::fixed;
 using survey::photo::PhotoPlan;
 
-constexpr double border = 0.015;          // of each side of the image
-constexpr double max_distance = 2.0;      // in view distances
-constexpr double to_the_surface = 0.999;  // of a line of sight, so that the surface is not in it
+constexpr double border = 0.015;      // Fraction of each side of the image.
+constexpr double max_distance = 2.0;  // Multiple of the view distance.
+constexpr double to_the_surface =
+    0.999;  // Fraction of a line of sight that ends before the surface.
 
 [[noreturn]] void fail(std::size_t line, const std::string& what) {
   throw Error(ErrorKind::bad_file, "line " + std::to_string(line) + " " + what);
@@ -61,7 +62,7 @@ std::vector<ControlPoint> read_control_points(const std::string& text,
     point.position = is_local ? values : frame->to_local({values.x(), values.y(), values.z()});
     points.push_back(std::move(point));
   }
-  if (points.empty()) fail(lines.size(), "is the last one, without any point");
+  if (points.empty()) fail(lines.size(), "is the last line, and the file contains no points");
   return points;
 }
 
@@ -75,7 +76,7 @@ std::vector<ControlObservation> find_observations(const ControlPoint& point, con
     const Eigen::Vector3d local = geometry::camera_pose(view).inverse() * point.position;
     const double distance = local.norm();
     if (local.z() <= 0.0 || distance > max_distance * plan.view_distance) continue;
-    // With distortion, slopes far outside the image may be mapped back into it.
+    // With distortion, points far outside the image may be mapped back into it.
     if (!camera.project(local, -0.1)) continue;
     Eigen::Vector2d slope = local.head<2>() / local.z();
     if (plan.camera.distortion) slope = geometry::distort(*plan.camera.distortion, slope);
@@ -113,9 +114,10 @@ std::vector<std::string> control_warnings(const std::vector<ControlPoint>& point
   for (const ControlPoint& point : points) {
     const std::size_t photos = find_observations(point, plan, is_blocked).size();
     if (photos >= min_control_photos) continue;
-    warnings.push_back("Warning: control point \"" + point.name + "\" is in " +
-                       std::to_string(photos) + " photos; it must be in at least " +
-                       std::to_string(min_control_photos) + ". Move it to where photos overlap.");
+    warnings.push_back("Warning: control point \"" + point.name + "\" is visible in " +
+                       std::to_string(photos) + " photos; at least " +
+                       std::to_string(min_control_photos) +
+                       " are required. Move it to an area where photos overlap.");
   }
   return warnings;
 }

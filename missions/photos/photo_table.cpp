@@ -31,7 +31,7 @@ std::string photo_table(const PhotoPlan& plan, const std::optional<flight::Site>
       "sigma_xyz_m,sigma_ypr_deg,gsd_m,sortie\n";
   std::optional<flight::LocalFrame> frame;
   if (site) frame.emplace(site->origin);
-  std::map<std::uint32_t, int> events;  // so far, by sortie
+  std::map<std::uint32_t, int> events;  // Number of photos so far, by sortie.
   for (const PlannedPhoto& photo : plan.photos) {
     const Eigen::Vector3d& position = photo.view.position;
     text += image_name(photo) + "," + std::to_string(++events[photo.sortie]) + "," +

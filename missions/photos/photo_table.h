@@ -1,4 +1,4 @@
-/// The planned photos as tables: photos.csv for people and spreadsheets, geo.txt for OpenDroneMap.
+/// Tables of the planned photos: photos.csv for users and spreadsheets, geo.txt for OpenDroneMap.
 #pragma once
 
 #include <optional>
@@ -11,35 +11,35 @@
 
 namespace skycap::missions::photos {
 
-/// Standard deviations of the poses in which a vehicle takes planned photos.
+/// Standard deviations of the photo poses achieved by a vehicle.
 struct PoseSigmas {
-  double position = 0.1;         ///< each axis [m]
-  double angle = 0.00872664626;  ///< yaw, pitch and roll [rad]
+  double position = 0.1;         ///< Position error in each axis [m].
+  double angle = 0.00872664626;  ///< Error of yaw, pitch and roll [rad].
 };
 
-/// The name of a photo's image file.
+/// Returns the file name of a photo.
 std::string image_name(const survey::photo::PlannedPhoto& photo,
                        const std::string& extension = ".jpg");
 
-/// CSV with a header: name, event (of the camera in its sortie, from 1), time_s (from take-off),
-/// x, y, z (mission frame: east, north, up), latitude, longitude, ellipsoid_height, yaw_deg
-/// (clockwise from north), pitch_deg (0 at the horizon, -90 straight down), roll_deg, sigma_xyz_m,
-/// sigma_ypr_deg, gsd_m (at the aim; empty: none) and sortie (from 1). Without a site the three
-/// geodetic columns are empty.
+/// Returns a CSV table with a header. Columns: name, event (number of the photo in its sortie, from
+/// 1), time_s (from take-off), x, y, z (mission frame: east, north, up), latitude, longitude,
+/// ellipsoid_height, yaw_deg (clockwise from north), pitch_deg (0 at the horizon, -90 straight
+/// down), roll_deg, sigma_xyz_m, sigma_ypr_deg, gsd_m (on the optical axis; empty without
+/// intersection) and sortie (from 1). Without a site, the three geodetic columns are empty.
 std::string photo_table(const survey::photo::PhotoPlan& plan,
                         const std::optional<flight::Site>& site, const PoseSigmas& sigmas = {});
 
-/// Angles of OpenDroneMap: yaw clockwise from north; pitch 0 straight down, 90 at the horizon; the
-/// top of the image points to the yaw [deg].
+/// Angles in OpenDroneMap's convention [deg]. Yaw is clockwise from north. Pitch is 0 straight down
+/// and 90 at the horizon. The top of the image points in the direction of the yaw.
 struct OdmAngles {
   double yaw_deg = 0.0, pitch_deg = 0.0, roll_deg = 0.0;
 };
 OdmAngles odm_angles(const survey::photo::PlannedPhoto& photo);
 
-/// OpenDroneMap's image geolocation file, in EPSG:4326 with ellipsoid heights: name, longitude,
-/// latitude, height, yaw, pitch, roll [deg], horizontal and vertical accuracy [m].
-/// Source: OpenDroneMap documentation, "Image Geolocation Files"; compute_opk() of ODM's photo.py
-/// for the angles.
+/// Returns OpenDroneMap's image geolocation file in EPSG:4326 with ellipsoid heights. Columns:
+/// name, longitude, latitude, height, yaw, pitch, roll [deg], horizontal and vertical accuracy [m].
+/// Sources: OpenDroneMap documentation, "Image Geolocation Files"; for the angles, compute_opk() in
+/// ODM's photo.py.
 std::string odm_geolocations(const survey::photo::PhotoPlan& plan, const flight::Site& site,
                              const PoseSigmas& sigmas = {});
 

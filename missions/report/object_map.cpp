@@ -68,15 +68,14 @@ svg.addEventListener("pointermove", (event) => {
 });
 )js";
 
-/// Text in single quotes for a POSIX shell.
+/// Returns text in single quotes for a POSIX shell.
 std::string shell_quoted(const std::string& text) {
   std::string quoted = "'";
   for (const char c : text) quoted += c == '\'' ? "'\\''" : std::string(1, c);
   return quoted + "'";
 }
 
-/// The triangles of a mesh that are seen from above, as an SVG path: x east, y south, in
-/// decimetres.
+/// Returns the triangles of a mesh, seen from above, as an SVG path in decimetres: x east, y south.
 std::string compute_outline(const geometry::Mesh& mesh) {
   std::string path;
   for (const auto& triangle : mesh.triangles) {
@@ -88,8 +87,8 @@ std::string compute_outline(const geometry::Mesh& mesh) {
     }
     const long across = (corners[2] - corners[0]) * (corners[5] - corners[1]) -
                         (corners[4] - corners[0]) * (corners[3] - corners[1]);
-    if (across == 0) continue;  // a wall
-    // All the same way round, so that none is a hole in another.
+    if (across == 0) continue;  // Vertical triangle.
+    // All triangles have the same orientation, so that none is a hole in another.
     if (across < 0) {
       std::swap(corners[2], corners[4]);
       std::swap(corners[3], corners[5]);
@@ -137,8 +136,9 @@ std::string object_map(const std::string& title, const std::vector<site_data::Ob
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width\"><meta http-equiv=\"Content-Security-Policy\" "
       "content=\"default-src 'none'; script-src '{}'; style-src '{}'\"><title>{}</title>"
-      "<style>{}</style></head>\n<body><header><h1>{}: {} objects. Click on the one to survey; "
-      "wheel: zoom, drag: move</h1><code id=\"command\">{}</code><span id=\"about\"></span>"
+      "<style>{}</style></head>\n<body><header><h1>{}: {} objects. Click on the object to "
+      "survey. Zoom with the wheel; drag to move the map</h1><code id=\"command\">{}</code><span "
+      "id=\"about\"></span>"
       "</header><svg></svg>\n<script type=\"application/json\" id=\"map\">{}</script>\n"
       "<script>{}</script></body></html>\n",
       policy_hash(script), policy_hash(style), html_text(title), style, html_text(title), count,

@@ -1,4 +1,4 @@
-/// A page with the objects of a map from above: a click on one prints the command that surveys it.
+/// HTML page with a map of objects. A click on an object displays the command that surveys it.
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace skycap::missions::report {
 
-/// The page as one HTML file that loads nothing. `command` is the command without the target,
-/// quoted for a shell; a click appends " --id 'NAME'". North is up. Objects without an area are
-/// omitted. O(triangles).
+/// Returns the page as one HTML file that loads no other files. `command` is the command without
+/// the target, quoted for a shell. A click appends " --id 'NAME'". North is up. Objects without an
+/// area are skipped. O(triangles).
 std::string object_map(const std::string& title, const std::vector<site_data::Object>& objects,
                        const std::string& command);
 

@@ -1,4 +1,4 @@
-/// Missing values of a file of prior data.
+/// Missing values that are required to read a file of prior data.
 #pragma once
 
 #include <string>
@@ -7,14 +7,15 @@
 
 namespace skycap::missions::site_data {
 
-/// Values that neither a file nor its source has, without which it cannot be read.
+/// Required values that neither the file nor its source settings contain.
 struct MissingValues {
   bool crs = false, vertical = false;
-  bool base = false;           ///< of outlines
-  std::string compute_height;  ///< the first outline without a height; empty: none
+  bool base = false;           ///< Base height of outlines.
+  std::string compute_height;  ///< Name of the first outline without a height, or empty.
 };
 
-/// Throws what read_prior() throws for a file that cannot be opened.
+/// Returns the missing values of a source. Throws the same errors as read_prior() if the file
+/// cannot be opened.
 MissingValues missing_values(const Source& source);
 
 }  // namespace skycap::missions::site_data

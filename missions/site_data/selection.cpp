@@ -142,7 +142,7 @@ void reject_unused(const Source& source, const FileContents& contents) {
       {"uncertainty", source.uncertainty.has_value(), has_uncertainty_in_use,
        "data other than ground truth"},
       {"vertical", source.vertical.has_value(), !is_on_terrain,
-       "data with heights; these outlines stand on the terrain"},
+       "data with heights; the base height of these outlines is taken from the terrain"},
   }};
   for (const KeyUse& use : uses) {
     if (!use.is_set || use.is_used) continue;

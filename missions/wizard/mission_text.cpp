@@ -61,8 +61,8 @@ const char* describe_purpose(site_data::Role role) {
 
 std::string prior_section(const MissionValues& values) {
   std::string text =
-      "# Prior data: known before the survey; uncertainty: METRES is the maximum error of the "
-      "data.\nprior:\n";
+      "# Prior data: data available before the survey. The key 'uncertainty' is their maximum "
+      "error in metres.\nprior:\n";
   for (const Source& source : values.sources) {
     text += fmt::format("  # {}\n  - {}\n", describe_purpose(source.role),
                         source_text(source, values.file));

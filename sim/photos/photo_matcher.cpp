@@ -14,22 +14,22 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// A photo as the matcher uses it.
+/// Photo in the form that the matcher uses.
 struct MatchedPhoto {
   const GreyImage* image;
   Vector3d position;
   Eigen::Matrix3d camera_from_world;
 };
 
-/// How one photo sees a sample.
+/// Geometry of a sample in one photo.
 struct PhotoObservation {
   std::size_t capture;
-  Vector3d ray;     ///< unit, from the sample to the camera
-  double distance;  ///< [m]
-  double cosine;    ///< of the incidence
+  Vector3d ray;     ///< Unit vector from the sample to the camera.
+  double distance;  ///< Distance from the camera [m].
+  double cosine;    ///< Cosine of the angle of incidence.
 };
 
-/// Grey values of a patch; nothing if part of it is outside of the image.
+/// Grey values of a patch. Empty if a part of it is outside the image.
 using Patch = std::vector<double>;
 
 class Matcher {
@@ -116,7 +116,7 @@ class Matcher {
     return std::atan2(a.ray.cross(b.ray).norm(), a.ray.dot(b.ray));
   }
 
-  /// The slopes of the rays through the patch's pixels in the reference photo, as directions.
+  /// Returns the directions of the rays through the patch's pixels in the reference photo.
   std::vector<Vector3d> patch_rays(const MatchedPhoto& capture, const Vector2d& centre) const {
     std::vector<Vector3d> rays;
     for (int dv = -options_.patch_radius; dv <= options_.patch_radius; ++dv) {
@@ -148,7 +148,8 @@ class Matcher {
     return patch;
   }
 
-  /// What a partner shows of the patch if it is on the plane through `point`.
+  /// Returns the patch in a partner's image under the assumption that it is on the plane through
+  /// `point`.
   Patch partner_patch(const MatchedPhoto& capture, const Vector3d& origin,
                       const std::vector<Vector3d>& rays, const Vector3d& point,
                       const Vector3d& normal) const {
@@ -156,7 +157,8 @@ class Matcher {
     const double offset = normal.dot(point - origin);
     for (const Vector3d& ray : rays) {
       const double slope = normal.dot(ray);
-      if (!(slope * offset > 0.0)) return {};  // the plane is parallel to the ray, or behind
+      if (!(slope * offset > 0.0))
+        return {};  // The plane is parallel to the ray, or behind the camera.
       const auto pixel = project(capture, origin + offset / slope * ray);
       if (!pixel) return {};
       patch.push_back(grey_at(*capture.image, *pixel));
@@ -164,7 +166,7 @@ class Matcher {
     return patch;
   }
 
-  /// Normalised cross-correlation in [-1, 1]; -1 without texture.
+  /// Returns the normalised cross-correlation in [-1, 1], or -1 without texture.
   static double correlation(const Patch& a, const Patch& b) {
     double mean_a = 0.0, mean_b = 0.0;
     for (std::size_t i = 0; i < a.size(); ++i) mean_a += a[i], mean_b += b[i];
@@ -175,7 +177,7 @@ class Matcher {
       aa += (a[i] - mean_a) * (a[i] - mean_a);
       bb += (b[i] - mean_b) * (b[i] - mean_b);
     }
-    constexpr double min_variance = 1.0;  // of a grey level, over the patch
+    constexpr double min_variance = 1.0;  // Minimum variance of the grey levels in the patch.
     if (aa < min_variance || bb < min_variance) return -1.0;
     return ab / std::sqrt(aa * bb);
   }
@@ -190,8 +192,8 @@ class Matcher {
     if (own.empty()) return false;
     const std::vector<Vector3d> rays = patch_rays(capture, *centre);
     const double gsd = reference.distance / camera_.focal_length_px();
-    // A step moves the point by at most half a pixel in any partner.
-    double max_move = 0.0;  // of the image in pixels, by depth [px/m]
+    // Each step moves the point by at most half a pixel in any partner.
+    double max_move = 0.0;  // Image motion per depth [px/m].
     for (const PhotoObservation& partner : partners) {
       max_move = std::max(max_move, camera_.focal_length_px() *
                                         reference.ray.cross(partner.ray).norm() / partner.distance);
@@ -208,7 +210,7 @@ class Matcher {
     return best_score > options_.min_score && std::abs(best_depth) <= options_.tolerance * gsd;
   }
 
-  /// Mean of the three best correlations, or of fewer if there are fewer partners.
+  /// Returns the mean of the three best correlations, or of all if there are fewer partners.
   double score(const Patch& own, const Vector3d& origin, const std::vector<Vector3d>& rays,
                const Vector3d& point, const Vector3d& normal,
                const std::vector<PhotoObservation>& partners) const {

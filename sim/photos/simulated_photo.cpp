@@ -19,10 +19,10 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double sky_grey = 0.75;           ///< grey of what no surface is in
-constexpr double ground_level = 0.75;  ///< albedo of the ground, relative to the scene's
+constexpr double sky_grey = 0.75;      ///< Grey value of pixels without a surface.
+constexpr double ground_level = 0.75;  ///< Albedo of the ground relative to the scene.
 
-/// A random number in [-1, 1) for a corner of the grid.
+/// Returns a random number in [-1, 1) for a corner of the grid.
 double corner_value(std::int64_t x, std::int64_t y, std::int64_t z, std::uint32_t octave) {
   std::uint64_t bits = geometry::split_mix(static_cast<std::uint64_t>(x) + octave * 0x9e3779b9ULL);
   bits = geometry::split_mix(bits ^ static_cast<std::uint64_t>(y));

@@ -16,7 +16,8 @@ using Eigen::Vector3d;
 
 constexpr std::size_t directions_each = 3;
 
-/// The photo of a sample from the wanted direction, as near to distance d as the space allows.
+/// Returns the photo of a sample from the required direction, as close to distance d as the space
+/// allows.
 std::optional<geometry::View> make_photo(const Observer& observer, const PhotoSpace& space,
                                          const Vector3d& target, const Vector3d& towards) {
   constexpr int max_shortenings = 4;
@@ -46,7 +47,7 @@ std::array<Vector3d, directions_each> directions_at(const Vector3d& normal,
   return directions;
 }
 
-/// The samples round by round, one for each cell in a round.
+/// Returns the samples in rounds. Each round contains one sample per cell.
 std::vector<std::uint32_t> samples_in_rounds(const TargetSamples& samples, double cell) {
   using Cell = std::array<std::int64_t, 3>;
   std::vector<std::uint32_t> left, later, result;

@@ -1,4 +1,4 @@
-/// Where photos could be taken from.
+/// Candidate photos of a target.
 #pragma once
 
 #include <cstddef>
@@ -15,15 +15,15 @@
 
 namespace skycap::survey::photo {
 
-/// Whether the vehicle may be at a position: stand-off, clearance, airspace. Safe to call from
-/// several threads.
+/// Returns true if the vehicle may be at a position, considering stand-off, clearance and airspace.
+/// Must be thread-safe.
 using FreePosition = std::function<bool(const Eigen::Vector3d&)>;
 
-/// The airspace of a plan.
+/// Positions and directions that a plan may use.
 struct PhotoSpace {
-  ViewLimits limits;          ///< heights, gimbal, geofence, no-fly volumes
-  FreePosition is_free;       ///< null: every position is free
-  double min_standoff = 0.0;  ///< minimum distance of a photo from its target [m]
+  ViewLimits limits;          ///< Limits of height and gimbal, geofence, and no-fly volumes.
+  FreePosition is_free;       ///< Null: all positions are free.
+  double min_standoff = 0.0;  ///< Minimum distance of a photo from the target [m].
 
   bool allows(const geometry::View& view) const {
     return limits.allow(view) && (!is_free || is_free(view.position));
@@ -31,17 +31,18 @@ struct PhotoSpace {
 };
 
 struct CandidateOptions {
-  std::size_t count = 700;  ///< wanted
+  std::size_t count = 700;  ///< Required number of candidates.
   std::uint64_t seed = 1;
-  unsigned threads = 1;  ///< zero: all processors; does not change the result
+  unsigned threads = 1;  ///< Zero: all processors. Does not affect the result.
 };
 
-/// Photos that look back at samples from view distance d, along the normal and along two directions
-/// tilted from it by up to 0.7 in tangent. Samples are taken in their order, one in each cell of
-/// 0.35 d, round by round, until there are enough photos or no sample is left. Where the limits of
-/// height and gimbal do not allow the direction, its elevation is changed at the same distance;
-/// where the position is not free, the distance is shortened by 0.8 up to four times, never below
-/// stand-off and nearest focus. Photos whose sample is obstructed are skipped.
+/// Returns photos that face samples from the view distance d. Directions are the normal and two
+/// directions tilted from it by a tangent of up to 0.7. Samples are processed in rounds, in their
+/// order, with one sample per cell of 0.35 d in each round. Sampling ends when there are enough
+/// photos or no samples remain. If the limits of height and gimbal exclude a direction, its
+/// elevation is changed at the same distance. If the position is not free, the distance is
+/// multiplied by 0.8 up to four times, but stays above stand-off and nearest focus. Photos with an
+/// obstructed sample are skipped.
 std::vector<geometry::View> candidate_photos(const Observer& observer, const PhotoSpace& space,
                                              const CandidateOptions& options);
 

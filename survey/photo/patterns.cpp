@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 constexpr std::array<const char*, 4> names{"nadir", "oblique", "dome", "facade"};
 constexpr double degree = std::numbers::pi / 180.0;
 
-/// Positions from `low` to `high` no farther apart than `spacing`, centred.
+/// Returns centred positions from `low` to `high` with at most `spacing` between them.
 std::vector<double> row(double low, double high, double spacing) {
   const double length = std::max(0.0, high - low);
   const auto steps = static_cast<int>(std::ceil(length / spacing - 1e-9));
@@ -24,7 +24,7 @@ std::vector<double> row(double low, double high, double spacing) {
   return positions;
 }
 
-/// Corners of the convex hull, anticlockwise: monotone chain of Andrew, 1979.
+/// Returns the corners of the convex hull, anticlockwise (monotone chain; Andrew, 1979).
 std::vector<Vector2d> convex_hull(std::vector<Vector2d> points) {
   std::ranges::sort(points, [](const Vector2d& a, const Vector2d& b) {
     return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
@@ -100,7 +100,7 @@ class PatternMaker {
   }
 
  private:
-  /// Rows from `low` upward, the last at `high` or above it by less than the spacing.
+  /// Returns rows from `low` upwards. The last row is at `high` or less than one spacing above it.
   static std::vector<double> row_from(double low, double high, double spacing) {
     const auto steps = static_cast<int>(std::ceil((high - low) / spacing - 1e-9));
     std::vector<double> positions;
@@ -117,7 +117,8 @@ class PatternMaker {
     }
   }
 
-  /// A grid over the box at height `z` whose rows run along `heading`, there and back in turn.
+  /// Adds a grid over the box at height `z`. Its rows run along `heading` in alternating
+  /// directions.
   void grid(const Vector2d& heading, double z, const Vector3d& direction, double stretch,
             double back) {
     const double beside = 0.15 * options_.view_distance;
@@ -150,11 +151,11 @@ class PatternMaker {
     }
   }
 
-  /// Along the hull's edges and around its corners at distance d, evenly spaced.
+  /// Adds evenly spaced photos along the hull's edges and around its corners at distance d.
   void around(const std::vector<Vector2d>& hull, double z, double spacing) {
     const double d = options_.view_distance;
     const std::size_t count = hull.size();
-    if (count < 2) return;  // the target is a vertical line
+    if (count < 2) return;  // The target is a vertical line.
     std::vector<double> turns(count);
     double length = 0.0;
     const auto normal = [&](std::size_t i) {

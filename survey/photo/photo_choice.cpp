@@ -13,22 +13,22 @@
 namespace skycap::survey::photo {
 namespace {
 
-/// An observation by a chosen photo, and how many stereo partners it has.
+/// Observation by a selected photo, with its number of stereo partners.
 struct Partnered {
   Observation seen;
   int partners = 0;
 };
 
-/// What the chosen photos are worth for a sample.
+/// State of a sample under the selected photos.
 struct SampleState {
   std::vector<Partnered> observations;
-  int partners = 0;  ///< the most of any observation
+  int partners = 0;  ///< Maximum over the observations.
   float h = 0.0F;
 };
 
 constexpr float weight_of_h = 0.3F;
 
-/// Samples that one loop of a thread takes.
+/// Samples processed in one task of a thread.
 constexpr std::size_t samples_in_block = 32;
 
 }  // namespace
@@ -64,13 +64,13 @@ struct PhotoChoice::Impl {
     });
   }
 
-  /// Whether no photo adds to the sample's worth.
+  /// Returns true if no photo increases the sample's value.
   bool is_full(const SampleState& state) const {
     return !state.observations.empty() && state.partners >= problem.rule.min_partners &&
            (!counts_h || state.h >= 1.0F);
   }
 
-  /// What an observation adds to a sample's worth.
+  /// Returns the increase of a sample's value by an observation.
   float gain(const Observation& added, const SampleState& state) const {
     const int enough = problem.rule.min_partners;
     if (state.observations.empty()) return 1.0F;
@@ -94,7 +94,7 @@ struct PhotoChoice::Impl {
     if (is) satisfied += static_cast<std::size_t>(sign);
   }
 
-  /// h of a sample by all its observations.
+  /// Returns h of a sample, computed from all its observations.
   float sum_of_pairs(const SampleState& state) const {
     float h = 0.0F;
     for (std::size_t i = 0; i < state.observations.size(); ++i) {
@@ -159,7 +159,7 @@ struct PhotoChoice::Impl {
     std::erase(chosen, candidate);
   }
 
-  /// Makes the gains of these samples current.
+  /// Updates the gains of these samples.
   void update_gains(std::span<const std::uint32_t> which) {
     const std::size_t blocks = (which.size() + samples_in_block - 1) / samples_in_block;
     const auto update = [&](std::size_t number) {
@@ -187,7 +187,7 @@ struct PhotoChoice::Impl {
     }
   }
 
-  /// Adds or subtracts a sample's weighted gains to those of its candidates.
+  /// Adds a sample's weighted gains to the totals of its candidates, or subtracts them.
   void sum_gains(std::uint32_t sample, double weight) {
     const std::uint32_t first = problem.observers.begin[sample];
     const auto candidates = problem.observers[sample];
@@ -197,7 +197,7 @@ struct PhotoChoice::Impl {
     }
   }
 
-  /// Considers the `kept` candidates of the greatest total only.
+  /// Restricts the candidates to the `kept` ones with the largest total.
   void keep_best(std::span<const float> factors, std::size_t kept) {
     if (kept >= totals.size()) return;
     std::vector<std::uint32_t> order(totals.size());
@@ -214,9 +214,9 @@ struct PhotoChoice::Impl {
     for (auto c = order.begin(); c != end; ++c) is_open[*c] = 1;
   }
 
-  /// Adds photos of the greatest `totals`, each times the factor of its candidate, while
-  /// `may_go_on()`; samples count with their weights. Only the `kept` candidates of the greatest
-  /// total at the beginning are considered.
+  /// Adds photos with the largest totals, multiplied by the factors of their candidates, while
+  /// `may_go_on()` returns true. Samples are weighted. Only the `kept` candidates with the largest
+  /// initial total are considered.
   template <typename GoesOn>
   void fill(std::span<const float> weights, std::span<const float> factors, std::size_t kept,
             double min_gain, GoesOn may_go_on, const std::function<void()>& added) {
@@ -250,7 +250,7 @@ struct PhotoChoice::Impl {
     }
   }
 
-  /// The photos nearest to one of them by position and direction, that one first.
+  /// Returns the photos closest to one of them in position and direction, starting with that one.
   std::vector<std::uint32_t> neighbourhood(std::uint32_t centre, std::size_t count) const {
     const geometry::View& middle = problem.candidates[centre];
     std::vector<std::pair<double, std::uint32_t>> by_distance;
@@ -274,15 +274,15 @@ struct PhotoChoice::Impl {
   const PhotoChoiceProblem& problem;
   StereoPairs pairs;
   std::vector<SampleState> samples;
-  std::vector<float> gains;       ///< of each entry of problem.observers
-  std::vector<char> is_current;   ///< of each sample's gains
-  std::vector<Observation> seen;  ///< of each entry of problem.observers
-  std::vector<char> is_open;      ///< candidates that are considered at present
-  bool counts_h = true;           ///< whether h is part of the worth at present
-  std::vector<double> totals;     ///< weighted gain of each candidate
-  std::vector<int> blocked;       ///< chosen photos at the same position
+  std::vector<float> gains;       ///< Gain of each entry of problem.observers.
+  std::vector<char> is_current;   ///< 1 if a sample's gains are current.
+  std::vector<Observation> seen;  ///< Observation of each entry of problem.observers.
+  std::vector<char> is_open;      ///< Candidates under consideration.
+  bool counts_h = true;           ///< True while h is part of the value.
+  std::vector<double> totals;     ///< Weighted gain of each candidate.
+  std::vector<int> blocked;       ///< Number of selected photos at the same position.
   std::vector<char> is_chosen;
-  std::vector<std::vector<std::uint32_t>> near;  ///< candidates at the same position
+  std::vector<std::vector<std::uint32_t>> near;  ///< Candidates at the same position.
   std::vector<std::uint32_t> chosen;
   std::size_t satisfied = 0;
 };
@@ -298,7 +298,7 @@ void PhotoChoice::Impl::repair_once(geometry::RandomNumbers& random, std::size_t
   const std::uint64_t noise_seed = random();
 
   const std::vector<std::uint32_t> removed = neighbourhood(centre, count);
-  // Samples that none of the removed photos observes change little and cost much.
+  // Samples that no removed photo observes change little, but would increase the computing time.
   std::vector<float> weights(samples.size(), 0.0F);
   std::vector<std::uint32_t> touched;
   for (const std::uint32_t c : removed) {
@@ -320,7 +320,7 @@ void PhotoChoice::Impl::repair_once(geometry::RandomNumbers& random, std::size_t
   std::vector<float> factors(problem.candidates.size());
   for (float& factor : factors) factor = static_cast<float>(1.0 + noise * draws.uniform());
   std::ranges::fill(is_open, 1);
-  is_current.assign(samples.size(), 0);  // of the candidates that were considered before
+  is_current.assign(samples.size(), 0);  // Gains exist only for the candidates considered before.
   fill(weights, factors, kept_candidates, 1e-6,
        [&] { return satisfied < enough && chosen.size() < before.size(); }, {});
   if (satisfied >= enough && chosen.size() <= before.size()) return;
@@ -341,7 +341,8 @@ PhotoChoiceProblem photo_choice_problem(std::vector<geometry::View> photos,
     std::vector<Eigen::Vector3d> positions;
     for (const geometry::View& photo : photos) positions.push_back(photo.position);
     const std::vector<std::uint32_t> same = same_positions(positions, problem.rule.same_position());
-    std::vector<std::vector<std::uint32_t>> seen(photos.size());  // by all photos of a position
+    std::vector<std::vector<std::uint32_t>> seen(
+        photos.size());  // Samples seen by all photos at a position.
     IndexLists distinct;
     for (std::uint32_t i = 0; i < photos.size(); ++i) {
       const auto all = problem.observed[i];

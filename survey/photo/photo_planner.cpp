@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A length in metres or, below one metre, in millimetres.
+/// Returns a length in metres or, below one metre, in millimetres.
 std::string length_text(double metres) {
   const double value = metres < 1.0 ? 1e3 * metres : metres;
   std::string text = std::to_string(std::round(100.0 * value) / 100.0);
@@ -30,9 +30,10 @@ std::string percent_text(double share) {
   return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + "%";
 }
 
-/// Samples by which photos are chosen: more where the target is large for a photo.
+/// Returns the number of samples for the selection of photos. It is larger for targets that are
+/// large in relation to a photo.
 std::size_t samples_for(double area, double view_distance) {
-  constexpr double per_square = 1000.0;  // of a square of side d
+  constexpr double per_square = 1000.0;  // Samples in a square with side d.
   constexpr double min_samples = 8000.0, max_samples = 20000.0;
   return static_cast<std::size_t>(
       std::clamp(per_square * area / (view_distance * view_distance), min_samples, max_samples));
@@ -42,7 +43,7 @@ std::size_t candidates_for(std::size_t samples) {
   return std::clamp<std::size_t>(samples / 3, 700, 5000);
 }
 
-/// Classes, histogram and completeness of the samples of a choice.
+/// Computes classes, histogram and completeness of the samples of a selection.
 PhotoFigures compute_figures(const PhotoChoice& choice, std::size_t samples, std::size_t photos,
                              std::size_t attainable) {
   PhotoFigures figures;
@@ -128,7 +129,7 @@ class Planner {
                   "photo.gsd (" + length_text(options_.gsd) + ") requires a view distance of " +
                       length_text(d) + ", which is below limits.stand_off (" +
                       length_text(min_standoff) + "): at " + length_text(min_standoff) +
-                      " this camera has " + length_text(camera_.gsd(min_standoff)) +
+                      " this camera has a GSD of " + length_text(camera_.gsd(min_standoff)) +
                       "; raise photo.gsd or lower limits.stand_off");
     }
     if (d < rule_.nearest_focus) {
@@ -171,7 +172,7 @@ class Planner {
     return pattern_photos(pattern, camera_, site_.target, pattern_options(), site_.space);
   }
 
-  /// Candidates: of their own, and those of all patterns that are compared.
+  /// Returns the candidates: candidate photos and the photos of all patterns that are compared.
   PhotoChoiceProblem make_problem(const Observer& observer) {
     std::vector<geometry::View> candidates;
     if (options_.flown_pattern) {
@@ -198,7 +199,7 @@ class Planner {
     return problem;
   }
 
-  /// Which samples of the evaluation set are satisfied when all candidates are taken.
+  /// Determines the evaluation samples that are satisfied if all candidates are taken.
   void find_attainable(const std::vector<geometry::View>& candidates, const Observer& evaluator) {
     report("computing the attainable surface");
     std::vector<Vector3d> positions;
@@ -246,7 +247,7 @@ class Planner {
       return;
     }
     PhotoChoice::Limits limits;
-    constexpr double min_gain = 0.002;  // of the samples
+    constexpr double min_gain = 0.002;  // Fraction of the samples.
     limits.min_gain = min_gain * static_cast<double>(chosen_on_.size());
     limits.max_photos = options_.max_photos;
     if (options_.target_share < 1.0) {
@@ -269,7 +270,7 @@ class Planner {
   void set_bound(const PhotoChoiceProblem& problem, const PhotoChoice& choice) {
     if (options_.flown_pattern) return;
     report("computing the lower bound");
-    constexpr std::size_t max_samples = 3000;  // any part of them gives a valid bound
+    constexpr std::size_t max_samples = 3000;  // Any subset gives a valid bound.
     std::vector<std::uint32_t> satisfied;
     for (std::uint32_t s = 0; s < chosen_on_.size() && satisfied.size() < max_samples; ++s) {
       if (choice.is_satisfied(s)) satisfied.push_back(s);
@@ -277,7 +278,7 @@ class Planner {
     result_.bound = cover_bound(problem, satisfied, rule_.min_partners + 1, choice.chosen().size());
   }
 
-  /// The chosen photos, the most useful first.
+  /// Stores the selected photos, most useful first.
   void set_views(const PhotoChoiceProblem& problem, const PhotoChoice& choice) {
     const PhotoChoiceProblem part = with_candidates(problem, choice.chosen());
     if (options_.flown_pattern) {
@@ -321,7 +322,7 @@ class Planner {
       parts += (parts.empty() ? "" : ", ") + std::to_string(photos);
     }
     const std::string what = "the photos form " + std::to_string(result_.graph.parts.size()) +
-                             " parts that share too little to be registered to one another (" +
+                             " parts that overlap too little to be registered to one another (" +
                              parts + " photos)";
     if (!is_unknown) {
       result_.warnings.push_back(what +
@@ -378,7 +379,7 @@ class Planner {
     }
   }
 
-  /// The condition that keeps most photos from a sample that all others allow.
+  /// Returns the condition that alone excludes most photos of a sample.
   MissingReason find_reason(std::size_t sample) const {
     constexpr int directions = 128;
     const Vector3d point = evaluated_on_.points[sample].cast<double>();
@@ -403,7 +404,7 @@ class Planner {
     return *max == 0 ? MissingReason::occluded : static_cast<MissingReason>(max - barred.begin());
   }
 
-  /// The one condition that a photo breaks; nothing if there is none or several.
+  /// Returns the condition that a photo violates, or nullopt if it violates none or several.
   std::optional<MissingReason> only_bar(const Vector3d& point, const Vector3d& towards,
                                         double distance, bool is_flat) const {
     const Vector3d position = point + distance * towards;
@@ -430,8 +431,8 @@ class Planner {
     return bars == 1 ? bar : std::nullopt;
   }
 
-  /// As many samples satisfied as by all candidates, with few of them: by a greedy choice, and the
-  /// search after it.
+  /// Selects few photos that satisfy as many samples as all candidates do, with a greedy selection
+  /// and the subsequent search.
   PhotoChoice pruned_choice(const PhotoChoiceProblem& own) const {
     PhotoChoice all(own);
     for (std::uint32_t c = 0; c < own.candidates.size(); ++c) all.add(c);
@@ -440,7 +441,7 @@ class Planner {
     limits.min_gain = 1e-3;
     limits.enough_satisfied = all.satisfied();
     pruned.greedy(limits);
-    constexpr std::size_t part_of_rounds = 3;  // a contestant, not the plan
+    constexpr std::size_t part_of_rounds = 3;  // The photos are only compared with the plan.
     pruned.destroy_and_repair({options_.repair_rounds / part_of_rounds, run_.seed}, run_.stop);
     return pruned;
   }
@@ -472,7 +473,7 @@ class Planner {
   StereoRule rule_;
   geometry::SightLines sights_;
   TargetSamples chosen_on_, evaluated_on_;
-  std::vector<char> is_attainable_;  ///< of each sample of the evaluation set
+  std::vector<char> is_attainable_;  ///< 1 for each attainable evaluation sample.
   PhotoPlanResult result_;
 };
 

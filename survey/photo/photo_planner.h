@@ -1,7 +1,8 @@
-/// The planner of photographs: the fewest photos from which photogrammetry reconstructs a known
-/// target, and what will be missing.
+/// Planner of photos: selects a minimum set of photos for the photogrammetric reconstruction of a
+/// known target, and predicts the missing surface.
 ///
-/// Photos are chosen on one set of surface samples; every figure is of another set.
+/// Photos are selected with one set of surface samples. All figures are computed with another set,
+/// so that they are not biased by the selection.
 #pragma once
 
 #include <array>
@@ -24,57 +25,60 @@
 
 namespace skycap::survey::photo {
 
-/// Whether the photogrammetry program is given the photos' poses (RTK, PPK), or has to find them.
+/// Source of the photo poses in the photogrammetry program: given (RTK, PPK), or estimated by the
+/// program.
 enum class PosesGiven { known, unknown };
 
 struct PhotoPlanOptions {
   geometry::PhotoCameraConfig camera;
-  double gsd = 0.0;  ///< ground sampling distance on a surface that faces the camera [m]
-  /// Partners, incidence and parallax; view distance and nearest focus follow from camera and gsd.
+  double gsd = 0.0;  ///< Ground sampling distance on a surface that faces the camera [m].
+  /// Rule for partners, incidence and parallax. View distance and nearest focus are computed from
+  /// camera and GSD.
   StereoRule rule;
   PosesGiven poses = PosesGiven::known;
   std::vector<Pattern> patterns{Pattern::facade, Pattern::dome, Pattern::oblique};
-  double forward_overlap = 0.8;  ///< of patterns
-  double side_overlap = 0.7;     ///< of patterns
-  double target_share = 1.0;     ///< of the attainable surface; the choice stops there
+  double forward_overlap = 0.8;  ///< Forward overlap of patterns.
+  double side_overlap = 0.7;     ///< Side overlap of patterns.
+  double target_share = 1.0;  ///< Fraction of the attainable surface at which the selection stops.
   std::size_t max_photos = 2000;
-  std::optional<Pattern> flown_pattern;  ///< flies a pattern as it is instead of a choice
-  std::size_t repair_rounds = 900;       ///< of the search after the greedy choice
+  std::optional<Pattern> flown_pattern;  ///< Pattern that replaces the selection.
+  std::size_t repair_rounds = 900;       ///< Rounds of the search after the greedy selection.
 
-  /// Throws Error{bad_config} naming the first field that is out of its interval.
+  /// Throws Error{bad_config} with the name of the first field outside its interval.
   void validate() const;
 };
 
-/// Values of one run of the planner.
+/// Parameters of one run of the planner.
 struct PhotoPlanRun {
   std::uint64_t seed = 1;
-  unsigned threads = 1;  ///< zero: all processors; does not change the plan
+  unsigned threads = 1;  ///< Zero: all processors. Does not affect the plan.
   std::stop_token stop{};
-  std::function<void(const std::string& what)> report{};  ///< told what is being done; may be null
+  std::function<void(const std::string& what)>
+      report{};  ///< Receives progress messages. May be null.
 };
 
-/// The target and its surroundings. Mission frame, z up.
+/// Target with its surroundings. Mission frame, z up.
 struct PhotoSite {
   geometry::Mesh target;
-  geometry::Mesh surroundings;  ///< obstructs lines of sight as well; may be empty
-  GroundHeight ground;          ///< null: no ground
-  double foot = 0.0;            ///< z of the target's foot [m]
-  double min_height = 0.0;      ///< z of the lowest photos of patterns [m]
+  geometry::Mesh surroundings;  ///< Other surfaces that obstruct lines of sight. May be empty.
+  GroundHeight ground;          ///< Null: no ground.
+  double foot = 0.0;            ///< z at the base of the target [m].
+  double min_height = 0.0;      ///< z of the lowest photos of patterns [m].
   PhotoSpace space;
 };
 
-/// Figures of a set of photos over samples of exposed surface.
+/// Figures of a set of photos, computed with samples of the exposed surface.
 struct PhotoFigures {
   std::size_t photos = 0;
-  std::size_t samples = 0;                   ///< exposed
-  std::size_t attainable = 0;                ///< satisfied when all candidates are taken
-  std::size_t satisfied = 0;                 ///< at least min_partners stereo partners
-  std::size_t good = 0;                      ///< k >= 3 or h >= 1
-  std::size_t weak = 0;                      ///< else k = 2 or h >= 0.2
-  std::size_t missing = 0;                   ///< else
-  std::array<std::size_t, 9> by_partners{};  ///< samples with k = -2, -1, 0, ... 5, and 6 or more
-  double completeness = 0.0;  ///< expected fraction of exposed surface with one depth or more
-  double threefold = 0.0;     ///< expected fraction with three depths or more
+  std::size_t samples = 0;     ///< Samples of the exposed surface.
+  std::size_t attainable = 0;  ///< Samples that are satisfied if all candidates are taken.
+  std::size_t satisfied = 0;   ///< Samples with at least min_partners stereo partners.
+  std::size_t good = 0;        ///< Samples with k >= 3 or h >= 1.
+  std::size_t weak = 0;        ///< Other samples with k = 2 or h >= 0.2.
+  std::size_t missing = 0;     ///< All other samples.
+  std::array<std::size_t, 9> by_partners{};  ///< Samples with k = -2, -1, 0, ... 5, and 6 or more.
+  double completeness = 0.0;  ///< Expected fraction of exposed surface with one depth or more.
+  double threefold = 0.0;     ///< Expected fraction with three depths or more.
 
   double share(std::size_t count) const {
     return samples > 0 ? static_cast<double>(count) / static_cast<double>(samples) : 0.0;
@@ -84,61 +88,63 @@ struct PhotoFigures {
   }
 };
 
-/// A pattern beside the plan.
+/// Result of a pattern that is compared with the plan.
 struct PatternResult {
   Pattern pattern = Pattern::nadir;
   std::vector<geometry::View> views;
-  std::size_t dropped = 0;  ///< photos that the space does not allow
+  std::size_t dropped = 0;  ///< Number of photos excluded by the space.
   PhotoFigures figures;
-  std::vector<geometry::View> pruned_views;  ///< what destroy-and-repair leaves of them
+  std::vector<geometry::View> pruned_views;  ///< Remaining photos after destroy-and-repair.
   PhotoFigures pruned;
 };
 
-/// Why a piece of exposed surface is not satisfied by a plan.
+/// Reason for which a piece of exposed surface is not satisfied by a plan.
 enum class MissingReason {
-  occluded,      ///< too few directions see it
-  min_standoff,  ///< positions that see it are too close to obstacles or outside of the airspace
-  incidence,     ///< positions that see it do so at too large an angle of incidence
-  gimbal,        ///< the gimbal cannot look there
-  height,        ///< positions that see it are below the minimum height
-  not_taken,     ///< attainable, but discarded: a limit, or too little gain for another photo
+  occluded,      ///< Visible from too few directions.
+  min_standoff,  ///< Visible only from positions too close to obstacles or outside the airspace.
+  incidence,     ///< Visible only at excessive angles of incidence.
+  gimbal,        ///< Visible only outside the gimbal's range.
+  height,        ///< Visible only from below the minimum height.
+  not_taken,     ///< Attainable, but excluded by a limit or by too little gain.
 };
 inline constexpr std::size_t missing_reasons = 6;
-/// "occluded", "min_standoff" and so on, as the enumerators are called.
+/// Returns the name for files: "occluded", "stand_off", "incidence", "gimbal", "height" or
+/// "not_taken".
 const char* to_string(MissingReason reason);
 
 struct CurvePoint {
   std::size_t photos = 0;
-  double completeness = 0.0;  ///< expected, of exposed surface
-  double satisfied = 0.0;     ///< fraction of exposed surface
+  double completeness = 0.0;  ///< Expected completeness of the exposed surface.
+  double satisfied = 0.0;     ///< Satisfied fraction of the exposed surface.
 };
 
 struct PhotoPlanResult {
-  double view_distance = 0.0;           ///< d [m]
-  std::vector<geometry::View> views;    ///< best first: every beginning is a good plan
-  std::vector<std::uint32_t> observed;  ///< samples of the evaluation set, of each photo
-  std::vector<double> gsd;              ///< where each photo's axis meets a surface [m]; 0: none
+  double view_distance = 0.0;  ///< View distance d [m].
+  std::vector<geometry::View>
+      views;  ///< Photos, most useful first. Truncated lists are good plans.
+  std::vector<std::uint32_t> observed;  ///< Number of evaluation samples that each photo observes.
+  std::vector<double> gsd;  ///< GSD where each optical axis meets a surface [m]. 0: none.
   std::size_t candidates = 0;
-  std::size_t greedy_photos = 0;    ///< before destroy-and-repair
-  std::size_t repaired_photos = 0;  ///< after it
-  std::size_t connecting = 0;       ///< photos added for the view graph
-  double surface_area = 0.0;        ///< of the target [m^2]
-  double exposed_area = 0.0;        ///< [m^2]
+  std::size_t greedy_photos = 0;    ///< Photos before destroy-and-repair.
+  std::size_t repaired_photos = 0;  ///< Photos after destroy-and-repair.
+  std::size_t connecting = 0;       ///< Photos added to connect the view graph.
+  double surface_area = 0.0;        ///< Surface area of the target [m^2].
+  double exposed_area = 0.0;        ///< Exposed surface area [m^2].
   PhotoFigures figures;
-  std::array<double, missing_reasons> missing_area{};  ///< by MissingReason [m^2]
+  std::array<double, missing_reasons> missing_area{};  ///< Missing area by MissingReason [m^2].
   std::vector<CurvePoint> curve;
-  CoverBound bound;  ///< of photos without those that connect
+  CoverBound bound;  ///< Lower bound of the photos, without connecting photos.
   ViewGraph graph;
   /// Pairs of views that share at least a fifth of the smaller sample set, for matching.
   std::vector<PhotoPair> matching_pairs;
   std::vector<PatternResult> patterns;
-  std::vector<std::string> warnings;  ///< sentences for the user
+  std::vector<std::string> warnings;  ///< Warnings for the user.
 };
 
 /// Plans photos. Throws Error{bad_config} if the view distance is below the stand-off or the
-/// nearest focus, or if unknown poses cannot be connected; Error{bad_geometry} if less than 10% of
-/// the target is exposed, or no candidate observes anything. After a stop the best plan so far is
-/// returned.
+/// nearest focus, or if photos with unknown poses cannot be connected. Throws Error{bad_geometry}
+/// if less than 10% of the target is exposed, or if no candidate observes a sample. After a stop
+/// request, returns the best plan found.
 PhotoPlanResult plan_photos(const PhotoPlanOptions& options, const PhotoSite& site,
                             const PhotoPlanRun& run);
 

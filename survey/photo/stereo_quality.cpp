@@ -16,7 +16,8 @@ double logistic(double x, double slope, double centre) {
   return 1.0 / (1.0 + std::exp(-slope * (x - centre)));
 }
 
-/// Value of a table whose first entry is of k < 0 and whose last is of all greater k.
+/// Returns the value of a table for k. The first entry applies to k < 0, the last one to all larger
+/// k.
 template <std::size_t size>
 double at(const std::array<double, size>& table, int partners) {
   return table[static_cast<std::size_t>(std::clamp(partners + 1, 0, static_cast<int>(size) - 1))];

@@ -15,9 +15,9 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int directions = 64;
-constexpr int min_free = 7;  // of 64: at least 10%
+constexpr int min_free = 7;  // At least 10% of 64.
 
-/// Directions of the upper hemisphere, evenly spread on a spiral of Fibonacci.
+/// Returns directions in the upper hemisphere, evenly distributed on a Fibonacci spiral.
 std::array<Vector3d, directions> hemisphere() {
   std::array<Vector3d, directions> result;
   const double golden = std::numbers::pi * (3.0 - std::sqrt(5.0));
@@ -35,7 +35,7 @@ class Exposure {
   Exposure(const geometry::SightLines& obstructions, const SampleOptions& options)
       : obstructions_(obstructions), options_(options), hemisphere_(hemisphere()) {}
 
-  /// Free directions over the side of a surface that `normal` points to.
+  /// Returns the number of free directions on the side of a surface towards `normal`.
   int free_directions(const Vector3d& point, const Vector3d& normal) const {
     const Vector3d first = geometry::any_orthogonal(normal), second = normal.cross(first);
     const double ground = options_.ground ? options_.ground(point.head<2>()) : 0.0;
@@ -48,7 +48,7 @@ class Exposure {
         if (to_ground < length && to_ground <= options_.min_standoff) continue;
         length = std::min(length, to_ground);
       }
-      // Off the surface, so that it does not obstruct itself.
+      // Start off the surface, so that it does not obstruct itself.
       const Vector3d from = point + 1e-4 * normal;
       free += obstructions_.first_hit(from, direction, length) ? 0 : 1;
     }

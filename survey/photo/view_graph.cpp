@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-/// A set of samples, one bit each.
+/// Set of samples with one bit each.
 using Bits = std::vector<std::uint64_t>;
 
 Bits to_bits(std::span<const std::uint32_t> observed, std::size_t samples) {
@@ -32,7 +32,7 @@ std::size_t count_shared(const Bits& a, const Bits& b) {
   return count;
 }
 
-/// A photo with what it observes.
+/// Photo with its observed samples.
 struct PhotoNode {
   const geometry::View* view;
   std::span<const std::uint32_t> observed;
@@ -49,7 +49,7 @@ std::vector<PhotoNode> make_nodes(std::span<const geometry::View> photos,
   return nodes;
 }
 
-/// The pair, if it shares enough.
+/// Returns the pair, or nullopt if it shares too few samples.
 std::optional<PhotoPair> make_pair_of_photos(const PhotoNode& a, const PhotoNode& b,
                                              const TargetSamples& samples, double min_shared) {
   const std::size_t smaller = std::min(a.observed.size(), b.observed.size());
@@ -79,7 +79,7 @@ bool keeps(const PhotoPair& pair, const EdgeRule& rule) {
          pair.scale <= rule.max_scale;
 }
 
-/// Sets that are joined: union-find with the lowest member as root.
+/// Disjoint sets: union-find with the lowest member as root.
 class Parts {
  public:
   explicit Parts(std::size_t count) : root_(count) { std::iota(root_.begin(), root_.end(), 0U); }
@@ -166,7 +166,8 @@ std::vector<std::uint32_t> connecting_photos(std::span<const geometry::View> pho
   const std::vector<PhotoNode> others =
       make_nodes(candidates, observed_by_candidates, samples.size(), threads);
   std::vector<char> is_open(candidates.size(), 1);
-  std::vector<std::vector<std::uint32_t>> edges(candidates.size());  // to photos and added ones
+  std::vector<std::vector<std::uint32_t>> edges(
+      candidates.size());  // Edges to photos and added candidates.
   const auto close_near = [&](const Eigen::Vector3d& position) {
     for (std::size_t c = 0; c < candidates.size(); ++c) {
       if ((candidates[c].position - position).norm() < same_position) is_open[c] = 0;
@@ -190,9 +191,9 @@ std::vector<std::uint32_t> connecting_photos(std::span<const geometry::View> pho
     return roots.size() <= 1 &&
            std::ranges::all_of(degree, [&](std::uint32_t d) { return d >= degree_wanted; });
   };
-  // Where one photo alone cannot join two parts: the one that comes nearest to another part.
+  // If no single photo joins two parts, add the one closest to another part.
   constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
-  std::vector<Eigen::Vector3d> positions;  // of photos and added ones
+  std::vector<Eigen::Vector3d> positions;  // Positions of photos and added candidates.
   for (const geometry::View& photo : photos) positions.push_back(photo.position);
   const auto distance_to_others = [&](const Eigen::Vector3d& position, std::uint32_t part) {
     double nearest = std::numeric_limits<double>::infinity();
@@ -208,7 +209,7 @@ std::vector<std::uint32_t> connecting_photos(std::span<const geometry::View> pho
       if (is_open[c] == 0 || edges[c].empty()) continue;
       const std::uint32_t part = parts.root(edges[c].front());
       const double distance = distance_to_others(candidates[c].position, part);
-      // No nearer than the photo that it is joined to is no step.
+      // A candidate must be closer to another part than the photo to which it registers.
       if (distance < nearest && distance < distance_to_others(positions[edges[c].front()], part)) {
         nearest = distance;
         choice = c;
@@ -218,7 +219,7 @@ std::vector<std::uint32_t> connecting_photos(std::span<const geometry::View> pho
   };
   std::vector<std::uint32_t> added;
   while (added.size() < max_photos && !is_done()) {
-    std::pair<int, std::size_t> best{0, 0};  // worth, then edges
+    std::pair<int, std::size_t> best{0, 0};  // Value, then number of edges.
     std::uint32_t choice = none;
     for (std::uint32_t c = 0; c < candidates.size(); ++c) {
       if (is_open[c] == 0 || edges[c].empty()) continue;

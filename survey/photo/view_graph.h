@@ -1,4 +1,4 @@
-/// Which photos a matcher can register to one another, and photos that connect a plan.
+/// Graph of the photos that a matcher can register to each other, and photos that connect it.
 #pragma once
 
 #include <cstddef>
@@ -11,23 +11,24 @@
 
 namespace skycap::survey::photo {
 
-/// Two photos that share samples.
+/// Pair of photos that share samples.
 struct PhotoPair {
-  std::uint32_t first = 0, second = 0;  ///< first < second
-  double shared = 0.0;                  ///< fraction of the smaller set of samples
-  double parallax = 0.0;                ///< mean over the shared samples [rad]
-  double scale = 1.0;                   ///< ratio of mean distances there, at least 1
+  std::uint32_t first = 0, second = 0;  ///< Indices of the photos, with first < second.
+  double shared = 0.0;    ///< Shared samples as a fraction of the smaller set of samples.
+  double parallax = 0.0;  ///< Mean parallax over the shared samples [rad].
+  double scale = 1.0;     ///< Ratio of the mean distances to them, at least 1.
 };
 
-/// When two photos register to one another.
+/// Conditions under which two photos register to each other.
 struct EdgeRule {
   double min_shared = 0.5;
-  double max_parallax = 30.0 * geometry::radians_per_degree;  ///< mean, at shared samples [rad]
+  double max_parallax =
+      30.0 * geometry::radians_per_degree;  ///< Mean over the shared samples [rad].
   double max_scale = 2.0;
 };
 
-/// All pairs that share at least `min_shared`, by their first and second photo. `observed` are the
-/// samples of each photo.
+/// Returns all pairs that share at least `min_shared`, sorted by first and second photo. `observed`
+/// contains the samples of each photo.
 std::vector<PhotoPair> shared_pairs(std::span<const geometry::View> photos,
                                     const IndexLists& observed, const TargetSamples& samples,
                                     double min_shared, unsigned threads);
@@ -35,24 +36,25 @@ std::vector<PhotoPair> shared_pairs(std::span<const geometry::View> photos,
 struct ViewGraph {
   std::size_t photos = 0;
   std::vector<PhotoPair> edges;
-  std::vector<std::uint32_t> part;    ///< of each photo; parts are numbered by their first photo
-  std::vector<std::uint32_t> degree;  ///< of each photo
-  std::vector<std::size_t> parts;     ///< photos of each part, greatest first
+  std::vector<std::uint32_t>
+      part;  ///< Part of each photo. Parts are numbered by their first photo.
+  std::vector<std::uint32_t> degree;  ///< Number of edges of each photo.
+  std::vector<std::size_t> parts;     ///< Number of photos in each part, in descending order.
   std::size_t min_degree() const;
   bool is_connected(std::size_t degree_wanted) const {
     return parts.size() <= 1 && min_degree() >= degree_wanted;
   }
 };
 
-/// The graph whose edges are the pairs that keep the rule.
+/// Returns the graph with an edge for each pair that satisfies the rule.
 ViewGraph view_graph(std::span<const geometry::View> photos, const IndexLists& observed,
                      const TargetSamples& samples, const EdgeRule& rule, unsigned threads);
 
-/// Candidates that join the parts of a graph and raise degrees below `degree_wanted`: again and
-/// again the one that joins most parts (worth 10 each) and raises most low degrees (worth 1 each),
-/// never nearer than `same_position` to a photo. Where no photo alone helps, the one that comes
-/// nearest to another part. Ends when the graph is connected, when no candidate helps, or at
-/// `max_photos`. Indices of `candidates`.
+/// Returns the indices of candidates that connect the parts of a graph and increase degrees below
+/// `degree_wanted`. Repeatedly adds the candidate with the largest value: 10 for each part joined
+/// and 1 for each low degree increased. If no single photo has a positive value, adds the candidate
+/// closest to another part. Candidates closer than `same_position` [m] to a photo are skipped. Ends
+/// when the graph is connected, when no candidate helps, or at `max_photos`.
 std::vector<std::uint32_t> connecting_photos(std::span<const geometry::View> photos,
                                              const IndexLists& observed,
                                              std::span<const geometry::View> candidates,

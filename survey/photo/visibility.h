@@ -1,4 +1,4 @@
-/// Which photos observe which samples.
+/// Visibility of samples in photos.
 #pragma once
 
 #include <cstddef>
@@ -17,9 +17,9 @@
 
 namespace skycap::survey::photo {
 
-/// Lists of unequal lengths, one behind the other.
+/// Lists of different lengths, stored consecutively.
 struct IndexLists {
-  std::vector<std::uint32_t> begin{0};  ///< of each list, and the end of the last
+  std::vector<std::uint32_t> begin{0};  ///< Start of each list, and the end of the last one.
   std::vector<std::uint32_t> items;
 
   std::size_t size() const { return begin.size() - 1; }
@@ -28,32 +28,34 @@ struct IndexLists {
   }
 };
 
-/// The lists of what is in them: list i of the result names the lists that hold i, in their order.
+/// Returns the transposed lists: list i of the result contains the indices of the lists that
+/// contain i, in ascending order. `count` is the number of lists in the result.
 IndexLists transposed(const IndexLists& lists, std::size_t count);
 
-/// A sample as a photo at `position` sees it, whether or not it observes it.
+/// Returns the observation of a sample from a photo at `position`, without testing whether the
+/// photo observes it.
 Observation make_observation(const Eigen::Vector3d& position, std::uint32_t photo,
                              const TargetSamples& samples, std::size_t sample);
 
-/// Decides observations. A photo observes a sample that projects into the image less a border of
-/// 1.5% on each side. The angle of incidence must be within its limit, and the distance at least
-/// the nearest focus and less than twice the view distance. The line of sight must be clear
-/// for 99.9% of its length. Keeps references.
+/// Tests whether photos observe samples. An observed sample projects into the image without a
+/// border of 1.5% on each side. The angle of incidence is within its limit, and the distance is at
+/// least the nearest focus and less than twice the view distance. The line of sight is clear over
+/// 99.9% of its length. Keeps references to the constructor's arguments.
 class Observer {
  public:
   Observer(const geometry::PhotoCamera& camera, const StereoRule& rule,
            const geometry::SightLines& obstructions, const TargetSamples& samples);
 
-  /// A photo that many samples are tested against.
+  /// Photo prepared for tests against many samples.
   struct Photo {
     explicit Photo(const geometry::View& view);
     geometry::View view;
     Eigen::Matrix3f camera_from_world;
   };
-  /// Whether a photo observes a sample.
+  /// Returns true if a photo observes a sample.
   bool observes(const Photo& photo, std::size_t sample) const;
 
-  /// All samples that the photo observes, ascending.
+  /// Returns all samples that the photo observes, in ascending order.
   std::vector<std::uint32_t> observed(const geometry::View& view) const;
 
   const TargetSamples& samples() const { return samples_; }
@@ -71,7 +73,7 @@ class Observer {
   float min_cosine_, half_width_, half_height_;
 };
 
-/// The samples that each photo observes. The result does not depend on `threads`.
+/// Returns the samples that each photo observes. The result does not depend on `threads`.
 IndexLists observed_samples(const Observer& observer, std::span<const geometry::View> photos,
                             unsigned threads);
 

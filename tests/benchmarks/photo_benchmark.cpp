@@ -1,13 +1,15 @@
-/// How much of a building photos reconstruct: a plan of photos against flight patterns, measured on
-/// simulated photos by the multi-view matcher of sim/photos, beside what is expected of them.
+/// Reconstructed fraction of a building: compares a plan of photos with flight patterns. The
+/// fraction is measured with simulated photos and the multi-view matcher of sim/photos, and
+/// compared with the predicted one.
 ///
 ///   photo_benchmark [--model FILE.obj | --scene courtyard] [--distance M, 6] [--partners K, 3]
 ///                   [--samples N, 3000] [--width PX, 400] [--rounds N, 900] [--threads N, 0]
 ///                   [--contrast C, 1] [--unknown-poses] [--no-patterns] [--photos FOLDER]
 ///
-/// FILE.obj has its y axis up. Without it and without a scene the target is a hut of 6 x 4 x 3 m.
-/// --samples are those of the measurement, which no plan has seen. --photos writes the plan's
-/// photos (PNG) to FOLDER/images and what COLMAP needs to FOLDER/colmap, for tests/checks/colmap.
+/// FILE.obj has its y axis up. Without a model or scene, the target is a hut of 6 x 4 x 3 m.
+/// --samples is the number of samples for the measurement, which are independent of the planner's
+/// samples. --photos writes the plan's photos (PNG) to FOLDER/images and the input of COLMAP to
+/// FOLDER/colmap, for tests/checks/colmap.
 #include <array>
 #include <chrono>
 #include <cstdio>
@@ -60,7 +62,7 @@ geometry::Mesh courtyard() {
   return mesh;
 }
 
-/// Turned so that z is up, its middle above the origin and its foot at 0.
+/// Returns the mesh with z up, centred above the origin, with its base at 0.
 geometry::Mesh model(const std::string& file) {
   geometry::Mesh mesh = geometry::read_mesh(file);
   for (Vector3d& vertex : mesh.vertices) vertex = {vertex.x(), -vertex.z(), vertex.y()};
@@ -70,7 +72,7 @@ geometry::Mesh model(const std::string& file) {
   return mesh;
 }
 
-/// A Mavic 3E whose photos have that width.
+/// Returns the camera of a Mavic 3E with this image width.
 geometry::PhotoCameraConfig make_camera(int width) {
   geometry::PhotoCameraConfig camera;
   camera.name = "mavic_3e_wide";
@@ -176,7 +178,7 @@ class Bench {
     return hut;
   }
 
-  /// Exposed surface, of another seed than the planner's.
+  /// Samples of exposed surface, with another seed than the planner's.
   void sample() {
     const TargetSamples samples =
         sample_target(target_, sight_lines_,
@@ -241,7 +243,7 @@ class Bench {
     std::printf("%zu photos are in %s\n", images.size(), folder.c_str());
   }
 
-  /// Pairs that share samples of the measurement.
+  /// Returns the pairs of photos that share samples of the measurement.
   std::vector<PhotoPair> pairs_of(const PhotoPlanResult& result) const {
     const TargetSamples samples =
         sample_target(target_, sight_lines_,

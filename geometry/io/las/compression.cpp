@@ -88,8 +88,8 @@ ChunkTable::ChunkTable(const ReadBytes& read, std::uint64_t file_size, std::uint
   constexpr std::uint64_t elsewhere = ~std::uint64_t{0};
   if (end_ == elsewhere) end_ = offset_at(file_size - sizeof(std::uint64_t));
   if (end_ < begin_ || end_ > file_size) {
-    throw_bad_file("has no chunk table: byte " + std::to_string(end_) +
-                   ", its declared offset, is not after the points");
+    throw_bad_file("has no valid chunk table: its declared offset (byte " + std::to_string(end_) +
+                   ") is not between the points and the end of the file");
   }
   ByteWindow table(read, end_, file_size);
   if (table.value<std::uint32_t>() != 0) {

@@ -35,7 +35,7 @@ std::vector<Axis> axes(Times times) {
   return chosen;
 }
 
-/// Planning times of other programs may be unknown: zeros have no place on a logarithmic axis.
+/// Planning times of other programs may be unknown. Zeros cannot be drawn on a logarithmic axis.
 std::vector<CurvePoint> curve_of(const BenchmarkCell& cell, const Axis& axis) {
   if (cell.trials.empty()) return {};
   const auto is_timed = [](const Trial& trial) { return trial.planning_time > 0.0; };
@@ -59,7 +59,7 @@ std::string xml_text(const std::string& text) {
   return escaped;
 }
 
-/// Okabe and Ito's colours, which people without full colour vision tell apart.
+/// Colours of Okabe and Ito, which people with colour vision deficiency can distinguish.
 constexpr std::array colours{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00",
                              "#56b4e9", "#7f7f7f", "#000000", "#8c510a", "#5e3c99"};
 
@@ -69,7 +69,7 @@ struct Line {
   std::vector<CurvePoint> points;
 };
 
-/// A round step that divides a length into at most six.
+/// Returns a round step that divides a length into at most six parts.
 double compute_step(double length) {
   const double unit = std::pow(10.0, std::floor(std::log10(length / 6.0)));
   for (const double factor : {1.0, 2.0, 5.0}) {
@@ -78,7 +78,8 @@ double compute_step(double length) {
   return 10.0 * unit;
 }
 
-/// One diagram of coverage in percent, 300 x 200, with its origin at the frame's lower left corner.
+/// Diagram of coverage in percent, 300 x 200, with its origin at the lower left corner of the
+/// frame.
 class Diagram {
  public:
   static constexpr double width = 300.0, height = 200.0;
@@ -180,7 +181,7 @@ std::string planner_title(const std::string& planner) {
   return method ? method->title : planner;
 }
 
-/// The curves of a mission along an axis; the colour of a planner is the same everywhere.
+/// Returns the curves of a mission along an axis. Each planner has the same colour in all diagrams.
 std::vector<Line> split_lines(const std::vector<BenchmarkCell>& cells, const std::string& mission,
                               const Axis& axis) {
   std::vector<std::string> planners;

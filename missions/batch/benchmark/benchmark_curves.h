@@ -8,13 +8,14 @@
 
 namespace skycap::missions::batch {
 
-/// curves.csv: mission, planner, axis (views, distance_m, planning_time_s, flown_s), x, mean
-/// coverage (a share) and its standard deviation over the trials; a line for each point.
+/// Returns the text of curves.csv, with a line for each point of a curve. Columns: mission,
+/// planner, axis (views, distance_m, planning_time_s, flown_s), x, mean coverage as a fraction, and
+/// its standard deviation over the trials.
 std::string curves_csv(const std::vector<BenchmarkCell>& cells, Times times = Times::shown);
 
-/// curves.svg: the same as a drawing, a row of diagrams for each mission and a diagram for each
-/// axis, with one standard deviation as a band. It has no scripts and loads nothing. Diagrams
-/// without data are left out.
+/// Returns the text of curves.svg, which shows the same data: a row of diagrams for each mission
+/// and a diagram for each axis. A band shows one standard deviation. The file contains no scripts
+/// and loads no other files. Diagrams without data are not drawn.
 std::string curves_svg(const std::vector<BenchmarkCell>& cells, Times times = Times::shown);
 
 }  // namespace skycap::missions::batch

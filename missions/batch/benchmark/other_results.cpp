@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// One trial of a file, with the words that messages name it by.
+/// Trial in a file, with its description for messages.
 class TrialReader {
  public:
   TrialReader(const Json& json, std::string where) : json_(json), where_(std::move(where)) {
@@ -77,7 +77,7 @@ class TrialReader {
   void require_length(const std::string& field, const std::vector<double>& numbers,
                       std::size_t views) const {
     if (numbers.size() == views) return;
-    fail(fmt::format("{} has {} numbers; it must have {}, as coverage_after", field, numbers.size(),
+    fail(fmt::format("{} has {} numbers; expected {}, as in coverage_after", field, numbers.size(),
                      views));
   }
 

@@ -131,8 +131,8 @@ class CampaignReader {
     if (items <= static_cast<double>(max_items)) return;
     root_.fail_at(
         "missions",
-        "multiplied by the variants, planners and seeds, the number of runs exceeds the limit of " +
-            std::to_string(max_items) + " runs; use fewer");
+        "the number of runs (missions x variants x planners x seeds) exceeds the limit of " +
+            std::to_string(max_items) + "; use fewer");
   }
 
   YamlSection root_;

@@ -254,7 +254,7 @@ void print_evaluation(const EvaluateOptions& options, const Truth& truth,
       file.filename().string(), evaluated.points, options.model,
       truth.surroundings.triangles.empty()
           ? ""
-          : fmt::format("; {} other points on the ground and on neighbours",
+          : fmt::format("; {} further points lie on the ground or on neighbouring buildings",
                         evaluated.surroundings),
       100.0 * evaluated.coverage, truth.registration_distance,
       visible ? fmt::format(", {:.2f}% of the visible surface", 100.0 * *visible) : "",

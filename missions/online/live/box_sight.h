@@ -1,5 +1,5 @@
-/// What the region of interest of a live survey keeps from being surveyed: measurements outside of
-/// it, and the part of its surface that was never in view.
+/// Effects of a live survey's region of interest: the measurements outside the box, and the
+/// fraction of the box's surface that was in no field of view.
 #pragma once
 
 #include <cstddef>
@@ -15,22 +15,23 @@
 
 namespace skycap::missions::online {
 
-/// Keeps count over all scans that were used. World frame, metres.
+/// Accumulates these figures over all scans of the survey. World frame [m].
 class BoxSight {
  public:
-  /// Samples the six faces of the box, evenly and the same each time. Without a box nothing is
+  /// Samples the six faces of the box uniformly and reproducibly. Without a box, nothing is
   /// counted.
   BoxSight(const std::optional<Eigen::AlignedBox3d>& box, const geometry::CameraConfig& camera);
 
-  /// O(points and samples).
+  /// Adds a scan in O(points + samples).
   void add(const geometry::Scan& scan);
 
-  /// Share of all measured points that are outside of the box and therefore ignored; 0 without
-  /// points.
+  /// Returns the fraction of all measured points that are outside the box and therefore ignored; 0
+  /// without points.
   double outside_share() const;
 
-  /// Share of the box's surface that was in the field of view and range of no scan. Occlusion is
-  /// not considered: what is behind a wall counts as seen. Nothing without a box or a scan.
+  /// Returns the fraction of the box's surface that was outside the field of view or range of every
+  /// scan. Occlusion is not considered: surface behind a wall counts as seen. Returns nullopt
+  /// without a box or a scan.
   std::optional<double> unseen_share() const;
 
  private:

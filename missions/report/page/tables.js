@@ -104,9 +104,9 @@ function targets_section(data) {
       ...target.kinds.map((kind, k) => cells(kind, path + "kinds." + k + ".", target.name + ", " + kind.name))];
   });
   const dry = data.summary.settings["scene.model"] === "prior"
-    ? " They were also the ground truth of the simulated sensor." : "";
+    ? " The same data served as ground truth for the simulated sensor." : "";
   return element("section", { id: "targets" }, element("h2", {}, "Targets"),
-    element("p", {}, "Surface of the target prior data and its covered fraction." + dry),
+    element("p", {}, "Surface area of each target in the prior data, and the fraction covered." + dry),
     table(["Object", number("Area"), number("Covered"), number("Coverage distance")], rows));
 }
 

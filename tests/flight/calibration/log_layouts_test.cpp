@@ -277,7 +277,7 @@ TEST(CalibrationErrors, NameTheCause) {
                 const double swing = count++ / 60 % 2 == 0 ? 1.7 : 1.0;  // each 6 s
                 return swing * amperes;
               }),
-              HasSubstr("cannot be fitted by a power model: the power scatters by"));
+              HasSubstr("does not fit a power model: the residual scatter"));
 }
 
 TEST(CalibrationErrors, NameTheRequiredFlight) {

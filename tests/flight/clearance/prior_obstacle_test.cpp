@@ -90,7 +90,7 @@ TEST(PriorObstacle, RejectsInvalidConfigurations) {
   EXPECT_THAT(error_message(config), HasSubstr("x has a point that is not finite"));
   config = {.name = "x"};
   config.columns.emplace_back();
-  EXPECT_THAT(error_message(config), HasSubstr("x has a column that is not finite, or empty"));
+  EXPECT_THAT(error_message(config), HasSubstr("x has a column that is empty or not finite"));
 }
 
 // Beside all else that is known: the nearest counts, and is called by its own name.

@@ -1,5 +1,5 @@
-// Missions of a photo camera: each planned photo is in the file, at its position, with its aim, and
-// no faster than the camera allows; at stops, and in runs without stops.
+// Missions with a photo camera: the file contains each planned photo at its position and with its
+// direction, at stops and in runs. The camera's minimum interval is respected.
 #include <algorithm>
 #include <filesystem>
 #include <functional>
@@ -83,7 +83,7 @@ TEST_P(PhotoFiles, CaptureEveryPhotoAtItsStop) {
   }
 }
 
-// The first and the last photo at a stop, four between them without one.
+// The first and the last photo are taken at stops, the four photos between them in flight.
 TEST_P(PhotoFiles, CaptureEveryPhotoOfARun) {
   if (!holds_photo_runs(GetParam().format)) GTEST_SKIP() << "the format has no distance trigger";
   const FlightPlan plan = with_photo_runs(stops());
@@ -113,7 +113,7 @@ TEST_P(PhotoFiles, AreVerifiedAgainBeforeTheyGetTheirNames) {
   EXPECT_GE(export_flight(plan, GetParam().format, KnownSpace(sample_site()), path).min_clearance,
             plan.clearance - rounding_bound);
   std::filesystem::remove(path);
-  // A photo that the writer forgets is noticed.
+  // A photo missing from the file is detected.
   FlightFacts facts = make_flight_facts(plan);
   facts.views.push_back({{0, -18, 8}, Vector3d::UnitY()});
   EXPECT_THAT(missing_photographs(flight_record(plan), facts),
@@ -139,10 +139,11 @@ TEST_P(PhotoFiles, AreNoFasterThanTheCamera) {
   EXPECT_THAT(problems(), Contains(HasSubstr("at most 0.50 m/s (rolling shutter)")));
 }
 
-// Property: whatever is uneven, bent, or aimed otherwise is photographed at a stop.
+// Property: photos that are unevenly spaced, off the line or in other directions are taken at
+// stops.
 TEST(PhotoRuns, AreStraightEvenAndOfOneAim) {
   const FlightPlan plan = photo_row_plan(vehicle_profile("generic"));
-  const std::size_t first = 1;  // above the pad, then corners or stations
+  const std::size_t first = 1;  // Index 0 is above the pad.
   std::size_t capture_point = first;
   while (!plan.waypoints[capture_point].is_capture_point) ++capture_point;
   const auto changed = [&](const std::function<void(Waypoint&)>& change, std::size_t i) {
@@ -157,14 +158,14 @@ TEST(PhotoRuns, AreStraightEvenAndOfOneAim) {
   EXPECT_EQ(changed([](Waypoint& w) { w.pitch = -0.1; }, 3), 1U) << "another aim in the middle";
   EXPECT_EQ(changed([](Waypoint& w) { w.captures = 2; }, 3), 1U);
   FlightPlan slow = plan;
-  slow.photo->exposure = 0.02;  // 0.125 m/s
+  slow.photo->exposure = 0.02;  // Maximum speed 0.125 m/s.
   EXPECT_EQ(photos_in_runs(with_photo_runs(slow)), 0U);
   FlightPlan unknown = plan;
   unknown.photo.reset();
   EXPECT_EQ(photos_in_runs(with_photo_runs(unknown)), 0U);
 }
 
-// By the maker's table of the action: with the heading of the vehicle as the gimbal's.
+// According to DJI's table of the action, with the heading of the vehicle for the gimbal.
 TEST(PhotoWpml, OrientedShootsWhereTheVehicleHasThem) {
   const FlightPlan plan = photo_row_plan(mavic_3e());
   const KmzContent kmz = unpack_kmz(write_kmz(plan));

@@ -1,4 +1,4 @@
-// What a KMZ makes a laser scanner do, as the interpreter sees it.
+// Commands of a KMZ file for a laser scanner, as read by the interpreter.
 #include "flight/interpreter/recording.h"
 
 #include <cmath>
@@ -26,7 +26,7 @@ using testing::Not;
 
 constexpr double degree = geometry::radians_per_degree;
 
-/// To the left of the nose and 30 degrees down.
+/// Returns a scanner mount directed to the left of the nose and 30 degrees down.
 const ScannerAim to_the_left{.azimuth = 0.5 * std::numbers::pi, .pitch = -30.0 * degree};
 
 FlightPlan plan_with(int payload) {
@@ -41,7 +41,7 @@ FlightPlan plan_with(int payload) {
   return plan;
 }
 
-constexpr double plenty = 1e9;  // of energy [J]
+constexpr double plenty = 1e9;  // Sufficient energy [J].
 
 const FlightPlan& commanded() {
   static const FlightPlan plan = [] {
@@ -84,7 +84,7 @@ TEST(Recording, KmzOfAScannerIsRecordedAndLooksWhereThePlanDoes) {
   EXPECT_THAT(validate_kmz(write_kmz(commanded())), IsEmpty());
 }
 
-// The looks that the file is checked by are those of the scanner on the airframe of the plan.
+// The file is checked against the scanner directions on the airframe of the plan.
 TEST(Recording, HeadingAndGimbalTakeThePlaceOfTheMount) {
   const FlightPlan plan = plan_with(zenmuse_l2);
   const std::vector<geometry::View> observations = make_flight_facts(commanded()).views;
@@ -93,7 +93,7 @@ TEST(Recording, HeadingAndGimbalTakeThePlaceOfTheMount) {
     if (!waypoint.is_capture_point) continue;
     ASSERT_LT(number, observations.size());
     const geometry::View& observation = observations[number++];
-    // Nose along yaw; the mount looks a right angle to the left of it and 30 degrees down.
+    // The nose is along the yaw. The mount is directed 90 degrees to the left and 30 degrees down.
     const Eigen::Vector3d nose(std::sin(waypoint.yaw), std::cos(waypoint.yaw), 0.0);
     const Eigen::Vector3d left(-nose.y(), nose.x(), 0.0);
     const Eigen::Vector3d right_look =
@@ -115,7 +115,7 @@ TEST(Recording, KmzNamesThePayloadAndItsSettings) {
   EXPECT_THAT(good().template_kml, HasSubstr("<wpml:scanningMode>nonRepetitive"));
 }
 
-// Back and forth three times on the first and on the last leg, which are verified anyway.
+// The vehicle flies back and forth three times on the first and the last leg, which are verified.
 TEST(Recording, ImuIsCalibratedOnVerifiedLegsAtBothEnds) {
   const std::vector<Waypoint>&before = plan_with(zenmuse_l2).waypoints,
         &after = commanded().waypoints;
@@ -182,7 +182,7 @@ TEST(Recording, FormatsThatCannotCommandAPayloadNameIt) {
       with_scanner_commands(plan_with(zenmuse_l2), Format::kml, to_the_left, plenty, notes));
 }
 
-// It is fixed to the airframe: the file must not turn a gimbal that is not there.
+// The scanner is fixed to the airframe. The file must not contain gimbal commands.
 TEST(Recording, ScannersThatRecordByThemselvesAreLeftToThePilot) {
   std::vector<std::string> notes;
   const FlightPlan plan =

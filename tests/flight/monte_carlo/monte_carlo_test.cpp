@@ -17,7 +17,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Property: the least distance of all steps, to the last bit, as if each had been asked for.
+// Property: the minimum distance of all steps is bitwise equal to that of separate queries.
 TEST(NearestPass, FindsMinDistanceOfAllSteps) {
   std::mt19937_64 random(4);
   Obstacles obstacles;
@@ -104,7 +104,7 @@ TEST_P(SampleFlight, CollidesWithUnknownTree) {
   EXPECT_LT(test.flights[0].simulated.nearest[0].closest.distance, 0.5);
 }
 
-// The review's worst: a height of return in the middle of the building.
+// Worst case: a return altitude at half the height of the building.
 TEST_P(SampleFlight, DetectsReturnsThatAreTooLow) {
   SimulatedMission simulated = mission();
   simulated.rtl_profile->level = 8.0;

@@ -1,5 +1,5 @@
-// Two who were written apart, the law that returns are proven by and the way that the simulator
-// flies, must agree.
+// The profile for the verification of returns and the return flight of the simulator were
+// implemented independently. They must agree.
 #include "flight/monte_carlo/return_flight.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 
 constexpr double level = 40.0;
 
-/// How far a place is from all that the law proves.
+/// Returns the distance of a position from the verified return paths.
 double outside(const std::vector<ReturnSegment>& segments, const Vector3d& position) {
   double min = 1e9;
   for (const ReturnSegment& segment : segments) {
@@ -53,7 +53,8 @@ TEST_P(SampledReturn, StaysWithinVerifiedSegments) {
       const Segment line{path[k - 1], path[k]};
       for (double share = 0.0; share <= 1.0; share += 0.02) {
         const Vector3d there = line.at(share);
-        if (there.z() < path.back().z() + rtl_profile().landing_climb) continue;  // the pilot's
+        if (there.z() < path.back().z() + rtl_profile().landing_climb)
+          continue;  // This part must be checked by the pilot.
         ASSERT_LT(outside(verified, there), 1e-9) << "from " << position.transpose();
       }
     }
@@ -65,7 +66,8 @@ TEST_P(SampledReturn, LandsAtNearestLandingPoint) {
   for (int i = 0; i < 200; ++i) {
     const Vector3d position{draws.between(70, 90), draws.between(-20, 20), draws.between(6, 30)};
     const Vector3d end = return_path(rtl_profile(), position, draws).back();
-    EXPECT_LT((end - Vector3d(60, 10, 1)).norm(), 8.0 + 1e-9);  // DJI's may land where they are
+    EXPECT_LT((end - Vector3d(60, 10, 1)).norm(),
+              8.0 + 1e-9);  // DJI vehicles may land on the spot.
   }
 }
 

@@ -1,4 +1,4 @@
-// Speeds at which photos are sharp and the camera keeps pace.
+// Maximum speeds for image sharpness and for the interval of the camera.
 #include "flight/motion/photo_speed.h"
 
 #include <cmath>
@@ -14,7 +14,8 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-// Worked by hand: half a GSD in the exposure, one GSD in the readout, one spacing in the interval.
+// Calculated by hand: half a GSD during the exposure, one GSD during the readout, one spacing per
+// interval.
 TEST(PhotoSpeeds, AreLimitedByBlurReadoutTriggerAndVehicle) {
   const PhotoShutter mavic_3e{.gsd = 0.005, .exposure = 0.001, .min_interval = 0.7};
   const PhotoSpeeds speeds = photo_speeds(mavic_3e, 3.3, 8.0);

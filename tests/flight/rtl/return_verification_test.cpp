@@ -24,15 +24,15 @@ RtlProfile make_rtl_profile(std::vector<AutopilotType> autopilots, double level,
   return {.autopilots = std::move(autopilots), .level = level, .landings = {pad}};
 }
 
-/// A free-standing upright slab, whose face toward -x is at `x`.
+/// Returns a free-standing vertical slab with a face towards -x at `x`.
 Obstacles wall_at(double x, double height = 60.0) {
   Obstacles obstacles;
   obstacles.mesh = scenes::box({x, -50, 0}, {x + 1, 50, height});
   return obstacles;
 }
 
-// The column over a place beside a wall keeps the distance that the place has; so does the whole
-// return to a pad farther off.
+// The column above a position near a wall has the same distance from it as the position. The same
+// applies to the return to a pad farther away.
 TEST(ReturnVerification, ComputesClearanceOfReturnAlongWall) {
   const RtlProfile rtl_profile = make_rtl_profile({AutopilotType::px4}, 30.0, {-40, 0, 0});
   const Segment position{{0, 0, 10}, {0, 0, 10}};
@@ -43,7 +43,7 @@ TEST(ReturnVerification, ComputesClearanceOfReturnAlongWall) {
   EXPECT_FALSE(verify_returns(too_near, position, rtl_profile, clearance).is_verified);
 }
 
-// A leg along a wall is proven to within the slack, and refused at less than the clearance.
+// A leg along a wall is verified within the slack and rejected below the clearance.
 TEST(ReturnVerification, AcceptsLegAlongWallWithinSlack) {
   const RtlProfile rtl_profile = make_rtl_profile({AutopilotType::ardupilot}, 30.0, {-40, 0, 0});
   const Segment leg{{0, -20, 10}, {0, 20, 12}};
@@ -57,7 +57,7 @@ TEST(ReturnVerification, AcceptsLegAlongWallWithinSlack) {
 }
 
 TEST(ReturnVerification, ReportsSegmentPositionAndObstacle) {
-  const KnownSpace space(wall_at(-20.0, 20.0));  // between the place and the pad
+  const KnownSpace space(wall_at(-20.0, 20.0));  // Between the position and the pad.
   const Segment position{{0, 0, 10}, {0, 0, 10}};
   const ReturnVerification low = verify_returns(
       space, position, make_rtl_profile({AutopilotType::px4}, 15.0, {-40, 0, 0}), clearance);
@@ -70,7 +70,8 @@ TEST(ReturnVerification, ReportsSegmentPositionAndObstacle) {
                   .is_verified);
 }
 
-// DJI's vehicles fly home level when near; with the wall between, no height of return helps them.
+// DJI vehicles near the pad return at their current altitude. With the wall between, no return
+// altitude avoids it.
 TEST(ReturnVerification, RejectsDjiLevelReturnThroughWall) {
   const KnownSpace space(wall_at(-20.0, 20.0));
   const Segment position{{0, 0, 10}, {0, 0, 10}};
@@ -82,7 +83,7 @@ TEST(ReturnVerification, RejectsDjiLevelReturnThroughWall) {
   EXPECT_TRUE(verify_returns(space, position, far, clearance).is_verified);
 }
 
-// Unknown is never free: over a place from which nobody has looked up there is no return.
+// Unknown space is not free: above a position without measured space no return is verified.
 TEST(ReturnVerification, RejectsClimbThroughUnobservedSpace) {
   MeasuredSpaceConfig config;
   config.region = {Vector3d(-10, -10, 0), Vector3d(10, 10, 40)};
@@ -94,12 +95,12 @@ TEST(ReturnVerification, RejectsClimbThroughUnobservedSpace) {
   EXPECT_FALSE(verification.is_verified);
   EXPECT_EQ(verification.closest.kind, ObstacleKind::unknown_space);
   EXPECT_EQ(verification.segment.part, ReturnPart::climb);
-  // Level through what was seen, and out of the box.
+  // Level flight through measured space and out of the box.
   const RtlProfile low = make_rtl_profile({AutopilotType::px4}, 15.0, {-40, 0, 0});
   EXPECT_TRUE(verify_returns(space, position, low, clearance).is_verified);
 }
 
-/// The distance of a return by brute force: a point every 20 cm, each asked for its own distance.
+/// Returns the distance of a return by brute force, from one query every 20 cm.
 double sampled_distance(const FreeSpace& space, const std::vector<ReturnSegment>& segments) {
   double min = std::numeric_limits<double>::infinity();
   for (const ReturnSegment& segment : segments) {
@@ -112,11 +113,11 @@ double sampled_distance(const FreeSpace& space, const std::vector<ReturnSegment>
   return min;
 }
 
-/// The pieces that an autopilot flies: of DJI's two ways home, either.
+/// Returns the segments that an autopilot flies, for either of DJI's two returns.
 class RandomSceneReturnVerification : public testing::TestWithParam<int> {};
 
-// No return from a point of a proven leg comes nearer than what was proven; and a leg that is
-// refused has a return nearer than the slack above the clearance.
+// No return from a verified leg comes closer than the verified distance. A rejected leg has a
+// return closer than the clearance plus the slack.
 TEST_P(RandomSceneReturnVerification, MatchesSampledReturns) {
   std::mt19937_64 random(static_cast<std::uint64_t>(GetParam()));
   Obstacles obstacles;
@@ -135,7 +136,7 @@ TEST_P(RandomSceneReturnVerification, MatchesSampledReturns) {
       ++rejected;
       const double near =
           sampled_distance(space, return_segments(rtl_profile, verification.from, return_slack));
-      EXPECT_LE(near, clearance + return_slack + 0.11);  // samples are 20 cm apart
+      EXPECT_LE(near, clearance + return_slack + 0.11);  // Samples are 20 cm apart.
       continue;
     }
     ++verified;

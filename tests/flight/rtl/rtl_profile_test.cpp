@@ -35,8 +35,8 @@ void expect_line(const ReturnSegment* segment, const Vector3d& from, const Vecto
   EXPECT_DOUBLE_EQ(segment->spread, spread);
 }
 
-// By hand, from mode_rtl.cpp with RTL_ALT 40, RTL_CONE_SLOPE 0: up at the place, level at 40, where
-// the corner is cut by at most WP_RADIUS = 2: the band from 38 to 40.
+// Calculated by hand from mode_rtl.cpp with RTL_ALT 40, RTL_CONE_SLOPE 0: climb at the position,
+// level flight at 40. The corner is cut by at most WP_RADIUS = 2, so the band is 38 to 40.
 TEST(RtlProfile, HasClimbAndTwoMetreLevelBandForArduCopter) {
   const auto segments = return_segments(make_rtl_profile({AutopilotType::ardupilot}), {30, 40, 12});
   ASSERT_THAT(segments, SizeIs(2));
@@ -44,8 +44,8 @@ TEST(RtlProfile, HasClimbAndTwoMetreLevelBandForArduCopter) {
   expect_line(find(segments, ReturnPart::level), {30, 40, 39}, {0, 0, 39}, 1.0);
 }
 
-// rtl_direct.cpp: the climb counts as done NAV_MC_ALT_RAD = 0.8 below, and the descent begins
-// within NAV_ACC_RAD = 1 of the landing place.
+// rtl_direct.cpp: the climb ends NAV_MC_ALT_RAD = 0.8 below its target, and the descent starts
+// within NAV_ACC_RAD = 1 of the landing point.
 TEST(RtlProfile, HasLevelBandAndLandingRadiusForPx4) {
   const RtlProfile rtl_profile = make_rtl_profile({AutopilotType::px4});
   const auto segments = return_segments(rtl_profile, {3, 4, 12});
@@ -61,8 +61,9 @@ struct DjiCase {
   bool may_stay_level, may_land;
 };
 
-// The manuals: over 50 m it climbs first; from 5 to 50 m it may fly home as high as it is; nearer
-// than 5 m it may land where it is. Three metres are added to both.
+// According to the manuals, the vehicle climbs first beyond 50 m. From 5 to 50 m it may return at
+// its current altitude. Within 5 m it may land on the spot. A tolerance of three metres is added to
+// both distances.
 TEST(RtlProfile, HasLevelAndLandingDistancesForDji) {
   for (const DjiCase& expected :
        {DjiCase{60, false, false}, DjiCase{53.1, false, false}, DjiCase{52.9, true, false},
@@ -94,13 +95,13 @@ TEST(RtlProfile, UsesNearestLandingOrBothWhenAmbiguous) {
   expect_line(find(return_segments(rtl_profile, {80, 0, 10}), ReturnPart::level), {80, 0, 39},
               {100, 0, 39}, 1.0);
   EXPECT_THAT(return_segments(rtl_profile, {52, 0, 10}),
-              SizeIs(3));  // 48 and 52 m: within 10 m of another
+              SizeIs(3));  // 48 and 52 m: within 10 m of another.
   EXPECT_THAT(return_segments(rtl_profile, {30, 0, 10}, 20.0),
               SizeIs(3));  // some within 20 m are nearer
 }
 
-/// How far the points of `segment` are from those of the piece of the same part that is nearest,
-/// ends compared with ends.
+/// Returns the distance of the points of `segment` from the nearest segment of the same part. Ends
+/// are compared with ends.
 double distance_to_counterpart(const ReturnSegment& segment,
                                const std::vector<ReturnSegment>& others) {
   double nearest = 1e9;
@@ -112,8 +113,8 @@ double distance_to_counterpart(const ReturnSegment& segment,
   return nearest;
 }
 
-// The property that the proof rests on: whatever is within reach has its ways home within the same
-// distance of those given for the reach.
+// Property on which the verification is based: all returns from positions within the reach are
+// within the same distance of the returns computed for that reach.
 TEST(RtlProfile, IsOneLipschitzInStartPosition) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> coordinate(-80, 80), height(5, 60), unit(-1, 1);

@@ -180,8 +180,9 @@ TEST_F(CorruptedLaz, ReportsUnsupportedCompression) {
 }
 
 TEST_F(CorruptedLaz, ReportsInvalidChunkTable) {
-  expect_rejection(points_, std::uint64_t{7}, "has no chunk table: byte 7");
-  expect_rejection(points_, std::uint64_t{1} << 60, "has no chunk table");
+  expect_rejection(points_, std::uint64_t{7},
+                   "has no valid chunk table: its declared offset (byte 7)");
+  expect_rejection(points_, std::uint64_t{1} << 60, "has no valid chunk table");
   expect_rejection(table_, std::uint32_t{1}, "its version is not 0");
   expect_rejection(table_ + 4, std::uint32_t{2}, "has fewer compressed chunks");
   expect_rejection(table_ + 4, std::uint32_t{0}, "has fewer compressed chunks");

@@ -7,7 +7,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-// Worked by hand at (0.3, 0.4), where r^2 is 0.25.
+// Calculated by hand at (0.3, 0.4), where r^2 is 0.25.
 TEST(BrownDistortion, FollowsItsFormula) {
   const Vector2d slope(0.3, 0.4);
   EXPECT_TRUE(distort({}, slope).isApprox(slope));
@@ -18,7 +18,7 @@ TEST(BrownDistortion, FollowsItsFormula) {
   EXPECT_TRUE(distort({.p2 = 0.01}, slope).isApprox(slope + Vector2d(0.0043, 0.0024)));
 }
 
-// Property: over the field of view of a wide lens each inverts the other.
+// Property: over the field of view of a wide-angle lens, each function inverts the other.
 TEST(BrownDistortion, IsInverted) {
   const BrownDistortion intrinsics{
       .k1 = -0.11, .k2 = 0.02, .p1 = 0.001, .p2 = -0.0005, .k3 = -0.003};

@@ -31,7 +31,7 @@ std::string validation_error(const PhotoCameraConfig& config) {
   return "";
 }
 
-/// A camera of a data sheet and its ground sampling distance at 10 m, in millimetres.
+/// Camera from a data sheet with its ground sampling distance at 10 m.
 struct DataSheet {
   double sensor_width, sensor_height;  // mm
   int width, height;
@@ -82,7 +82,8 @@ TEST(PhotoCamera, RejectsThe35MillimetreEquivalent) {
   EXPECT_THAT(validation_error(config),
               HasSubstr("focal_length (24 mm) appears to be the 35 mm equivalent"));
   EXPECT_THAT(validation_error(config), HasSubstr("about 12 mm"));
-  config.horizontal_fov = 39.6 * radians_per_degree;  // a lens that truly has 24 mm
+  config.horizontal_fov =
+      39.6 * radians_per_degree;  // A lens with an actual focal length of 24 mm.
   EXPECT_EQ(validation_error(config), "");
 }
 
@@ -96,7 +97,7 @@ TEST(PhotoCamera, RejectsFieldOfViewThatContradictsFocalLength) {
 
 TEST(PhotoCamera, RejectsSizesOfDifferentCrops) {
   PhotoCameraConfig config = mavic_3e();
-  config.height = 2970;  // 16:9 of the same sensor
+  config.height = 2970;  // A 16:9 crop of the same sensor.
   EXPECT_THAT(validation_error(config), HasSubstr("must have the same aspect ratio within 2%"));
 }
 

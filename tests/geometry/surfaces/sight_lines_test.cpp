@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Triangles at random in a cube of side 10.
+/// Returns random triangles in a cube with side 10.
 Mesh random_mesh(std::size_t count, std::uint64_t seed) {
   RandomNumbers random(seed);
   Mesh mesh;
@@ -29,7 +29,8 @@ Mesh random_mesh(std::size_t count, std::uint64_t seed) {
   return mesh;
 }
 
-/// Distance to the first triangle by solving o + t d = a + u ab + v ac for each of them.
+/// Returns the distance to the first triangle by solving o + t d = a + u ab + v ac for each
+/// triangle.
 std::optional<double> brute_force(const Mesh& mesh, const Vector3d& origin,
                                   const Vector3d& direction, double max_distance) {
   std::optional<double> first;

@@ -1,4 +1,4 @@
-// Progress on terminals and in logs.
+// Progress output on terminals and in logs.
 #include <string>
 
 #include <gmock/gmock.h>
@@ -20,7 +20,7 @@ TEST(StageClock, TellsRateAndRemainingTimeOfAStage) {
   EXPECT_EQ(clock.rate_text(), "");
   clock.hear("vase: view 20 of at most 50, 1500 points", 104.0);
   EXPECT_EQ(clock.rate_text(), ", 2.5/s, 12 s left");
-  // Another stage begins from its own speed.
+  // The rate of a new stage does not depend on the previous stage.
   clock.hear("vase: writing 5 of 10", 110.0);
   EXPECT_EQ(clock.rate_text(), "");
   clock.hear("vase: writing 6 of 10", 130.0);

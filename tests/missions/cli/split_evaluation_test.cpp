@@ -112,7 +112,7 @@ TEST_F(SplitEvaluation, SeparatesGroundFromModel) {
   EXPECT_EQ(figures.at("points"), 500);
   EXPECT_EQ(figures.at("points_beside"), 500);
   EXPECT_NEAR(figures.at("distance_to_model_m").at("mean").get<double>(), 0.01, 0.02);
-  EXPECT_THAT(run_evaluate({}), HasSubstr("500 other points on the ground"));
+  EXPECT_THAT(run_evaluate({}), HasSubstr("500 further points lie on the ground"));
   EXPECT_EQ(run_evaluate({"--json", "--out", folder_ / "out", "--pieces", "2"}), whole);
 }
 

@@ -7,7 +7,7 @@
 namespace skycap::missions::config {
 namespace {
 
-// The numbers of the maker's table; a P1 is no H20, whose number is often given to it by mistake.
+// Values from DJI's table. The P1 must not have the number of the H20, a common mistake.
 TEST(WpmlPayload, IsThatOfTheCamera) {
   EXPECT_EQ(wpml_payload("zenmuse_p1_35"), 50);
   EXPECT_EQ(wpml_payload("dji_zenmuse_p1"), 50);

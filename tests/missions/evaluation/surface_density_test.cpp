@@ -1,4 +1,4 @@
-// Densities against counting every point, and against closed forms.
+// Comparison of densities with brute-force counts and closed-form values.
 #include "missions/evaluation/surface_density.h"
 
 #include <cstring>
@@ -16,7 +16,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3f;
 
-/// A square of 10 m at z = 0, facing up.
+/// Returns a square of 10 m at z = 0 that faces up.
 geometry::Mesh square() {
   geometry::Mesh mesh;
   mesh.vertices = {{0, 0, 0}, {10, 0, 0}, {10, 10, 0}, {0, 10, 0}};
@@ -24,7 +24,7 @@ geometry::Mesh square() {
   return mesh;
 }
 
-/// A step: a level square, a wall of 5 m up from its east edge, and nothing else.
+/// Returns a level square with a wall of 5 m above its east edge.
 geometry::Mesh step() {
   geometry::Mesh mesh = square();
   mesh.vertices.insert(mesh.vertices.end(), {{10, 0, 5}, {10, 10, 5}});
@@ -65,7 +65,8 @@ TEST(SurfaceDensity, CountsEveryPointWithinTheRadius) {
   }
 }
 
-// A grid of points 0.1 m apart has 100 on each square metre, at the edges of the surface too.
+// A point grid with a spacing of 0.1 m has 100 points per square metre, also at the edges of the
+// surface.
 TEST(SurfaceDensity, IsThatOfAnEvenGridUpToTheEdges) {
   std::vector<Vector3f> points;
   for (int x = 0; x < 100; ++x) {
@@ -89,7 +90,7 @@ TEST(SurfaceDensity, IsThatOfAnEvenGridUpToTheEdges) {
   EXPECT_FALSE(meter.figures(1.0, SurfaceClass::wall));
 }
 
-// Points on the floor only: roofs are dense and walls are not, but for their feet.
+// With points only on the floor, roofs are dense, and walls only at their base.
 TEST(SurfaceDensity, TellsWallsFromLevelSurface) {
   std::vector<Vector3f> points;
   for (int x = 0; x < 100; ++x) {
@@ -132,7 +133,7 @@ Number at(const std::string& bytes, std::size_t offset) {
   return number;
 }
 
-/// Offset of a tag's entry in the only directory.
+/// Returns the offset of a tag's entry in the only directory.
 std::size_t make_entry(const std::string& tiff, std::uint16_t tag) {
   const auto begin = at<std::uint32_t>(tiff, 4);
   for (std::uint16_t i = 0; i < at<std::uint16_t>(tiff, begin); ++i) {
@@ -158,7 +159,7 @@ TEST(DensityRaster, GeoTiffHoldsPointsPerSquareMetre) {
   EXPECT_EQ(raster.geotiff(std::nullopt), tiff);
 }
 
-// Its corners are where surveyors' maps have them.
+// The corners have the correct map coordinates.
 TEST(DensityRaster, GeoTiffIsPlacedInUtm) {
   const flight::Site site{{51.753458, -1.254022, 111.5}, 46.7};
   const DensityRaster raster({Vector2d(-100, -50), Vector2d(100, 50)}, 1.0);

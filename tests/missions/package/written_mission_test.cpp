@@ -1,4 +1,4 @@
-// The coverage that is printed is that of the files that are flown.
+// The printed coverage is the coverage of the written files.
 #include "missions/package/written_mission.h"
 
 #include <algorithm>
@@ -28,8 +28,8 @@ using tests::read_content;
 using tests::run_skycap;
 using tests::TestFolder;
 
-/// A survey by a vehicle of DJI that takes off beside its target: within 50 m of it the vehicle
-/// returns level, and some views have no verified return.
+/// Survey by a DJI vehicle that takes off next to its target. Within 50 m, the vehicle returns at
+/// its current altitude, and some views have no verified return.
 const std::string near_pad =
     "scene: {model: 'builtin:teapot', longest_side: 20.0, ground: true}\n"
     "sensor: {width: 160, height: 120, max_range: 100, noise: {sigma: 0.02}}\n"
@@ -67,7 +67,8 @@ const Planned& beside() {
   return planned;
 }
 
-/// Coverage of the visible surface by what the file captures, with the noise of another seed.
+/// Returns the coverage of the visible surface by the captures of the file, with noise from another
+/// seed.
 double covered_by(const Planned& planned, const std::string& name) {
   const config::MissionSetup setup = config::read_mission(planned.folder / "m.yaml", {});
   const evaluation::SurveyScene scene(setup.simulation, planned.folder.path(), 1);
@@ -122,7 +123,7 @@ TEST(WrittenMission, FormatsThatCaptureTheSameShareTheirFigures) {
   EXPECT_EQ(written[0].at("files").size(), 5U);
 }
 
-// A file that lacks a photograph covers less: the figure follows the file and not the plan.
+// A file with a missing photo covers less: the figure depends on the file, not on the plan.
 TEST(WrittenMission, ViewsThatAFileDoesNotCaptureAreNotFlown) {
   const package::PackagedSurvey survey = package::read_package(far_away().folder / "package", {});
   const flight::Route route =

@@ -1,4 +1,5 @@
-// A photo mission from its file to its results: the target is prior data, and no scene is known.
+// Photo mission from the mission file to the results. The target is prior data, and there is no
+// scene model.
 #include "missions/photo/photo_mission.h"
 
 #include <filesystem>
@@ -179,7 +180,7 @@ TEST_F(PhotoMissionTest, MakesAVerifiedFlightWithItsFiles) {
   EXPECT_EQ(summary["photo"]["curve"].size(), mission.result.views.size());
   EXPECT_EQ(summary["photo"]["patterns"][0]["pattern"], "dome");
 
-  // The package is read again as skycap export does.
+  // The package is read in the same way as by skycap export.
   const package::PackagedSurvey packaged = package::read_package(out, {});
   EXPECT_EQ(packaged.views.size(), mission.result.views.size());
   const flight::Route again = package::plan_flight(packaged.flight, packaged.measured, packaged.pad,

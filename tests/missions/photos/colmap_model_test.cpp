@@ -1,4 +1,4 @@
-// What COLMAP reads: projections with the written model are those of the camera.
+// Files for COLMAP: projections with the written model equal those of the camera.
 #include "missions/photos/colmap_model.h"
 
 #include <cstdlib>
@@ -30,7 +30,7 @@ std::vector<std::string> data_lines(const std::string& text) {
   return lines;
 }
 
-/// The projection that COLMAP's documentation defines, of its text files.
+/// Returns the projection with the text files, as defined in COLMAP's documentation.
 Vector2d colmap_pixel(const std::string& cameras, const std::string& image_line,
                       const Vector3d& world) {
   std::istringstream camera(data_lines(cameras)[0]), image(image_line);
@@ -49,13 +49,14 @@ Vector2d colmap_pixel(const std::string& cameras, const std::string& image_line,
           fy * (v * radial + 2 * p2 * u * v + p1 * (r2 + 2 * v * v)) + cy};
 }
 
-// COLMAP counts pixels from the corner of the image, Skycap from the centre of its first pixel.
+// COLMAP's pixel origin is the corner of the image. Skycap's is the centre of the first pixel.
 TEST(ColmapModel, ProjectsAsTheCameraDoes) {
   survey::photo::PhotoPlan plan = test_plan();
   const geometry::PhotoCamera camera(plan.camera);
   const auto images = data_lines(colmap_images(plan));
   ASSERT_THAT(images, SizeIs(4));
-  const std::vector<std::size_t> photo_of{1, 2, 3, 0};  // by name
+  const std::vector<std::size_t> photo_of{1, 2, 3,
+                                          0};  // Photo of each image, in the order of names.
   std::size_t seen = 0;
   for (std::size_t i = 0; i < images.size(); ++i) {
     const survey::photo::PlannedPhoto& photo = plan.photos[photo_of[i]];
@@ -82,7 +83,7 @@ TEST(ColmapModel, HasTheDistortionOfTheLens) {
   camera.distortion->k3 = -0.005;
   EXPECT_EQ(colmap_camera_model(camera), "FULL_OPENCV");
   EXPECT_THAT(flight::split(colmap_camera_parameters(camera), ','), SizeIs(12));
-  // A camera at the origin that looks along z: the world is the camera's.
+  // For a camera at the origin that faces along z, world and camera frame are equal.
   const Vector2d slope(0.4, -0.3);
   const geometry::PhotoCamera intrinsics(camera);
   const Vector2d expected =
@@ -100,7 +101,7 @@ TEST(ColmapModel, MatchesPairsThatShareEnough) {
               ElementsAre("photo_0004.png photo_0001.png", "photo_0002.png photo_0003.png"));
 }
 
-// An independent program reads the model: Debian's colmap, where it is installed.
+// Independent check: Debian's colmap reads the model, if it is installed.
 TEST(ColmapModel, IsReadByColmap) {
   if (std::system("command -v colmap > /dev/null 2>&1") != 0) {
     GTEST_SKIP() << "colmap is not installed";
@@ -118,7 +119,7 @@ TEST(ColmapModel, IsReadByColmap) {
   EXPECT_THAT(geometry::read_file(log), HasSubstr("Cameras: 1"));
   EXPECT_THAT(geometry::read_file(log), HasSubstr("Images: 4"));
   EXPECT_THAT(geometry::read_file(log), HasSubstr("Registered images: 4"));
-  // Read and written again by COLMAP, the poses are the same.
+  // The poses are unchanged after COLMAP has read and written them.
   const std::filesystem::path again = folder / "again";
   std::filesystem::create_directories(again);
   ASSERT_EQ(std::system(("colmap model_converter --input_path " + quoted + " --output_path '" +

@@ -41,14 +41,15 @@ TEST(ControlPoints, NameTheLineThatIsWrong) {
   EXPECT_THAT(error_message("name,x,y,z\nP,1,2,3\nP,1,2,3\n", {}),
               HasSubstr("line 3 lists \"P\" again"));
   EXPECT_THAT(error_message("name,x,y,z\n,1,2,3\n", {}), HasSubstr("line 2 has no name"));
-  EXPECT_THAT(error_message("name,x,y,z\n", {}), HasSubstr("without any point"));
+  EXPECT_THAT(error_message("name,x,y,z\n", {}), HasSubstr("the file contains no points"));
   EXPECT_THAT(error_message("name,latitude,longitude,height\nP,51,-1,100\n", {}),
               HasSubstr("require site.latitude_deg"));
   EXPECT_THAT(error_message("name,latitude,longitude,height\nP,510,-1,100\n", site),
               HasSubstr("line 2 has a latitude"));
 }
 
-// Under the first photo, which looks straight down with its top to the north: by hand.
+// Calculated by hand for a point below the first photo, which faces straight down with its top to
+// the north.
 TEST(ControlPoints, AreWhereThePhotoShowsThem) {
   const survey::photo::PhotoPlan plan = test_plan();
   const double focal = geometry::PhotoCamera(plan.camera).focal_length_px();
@@ -77,7 +78,7 @@ TEST(ControlPoints, AreHiddenByWhatIsInTheWay) {
   const ControlPoint far{"far", {0.0, 0.0, -40.0}};
   EXPECT_THAT(find_observations(far, plan, nothing_is_blocked), IsEmpty());
   EXPECT_THAT(control_warnings({point, far}, plan, nothing_is_blocked),
-              ElementsAre(HasSubstr("\"far\" is in 0 photos")));
+              ElementsAre(HasSubstr("\"far\" is visible in 0 photos")));
   const std::string table = control_table({point}, plan, nothing_is_blocked);
   EXPECT_THAT(table, HasSubstr("P,photo_0004.jpg,2640.0,1978.0,16.000,"));
 }

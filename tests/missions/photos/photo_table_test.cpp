@@ -1,4 +1,4 @@
-// The tables of planned photos, and the angles of OpenDroneMap.
+// Tables of planned photos and angles of OpenDroneMap.
 #include "missions/photos/photo_table.h"
 
 #include <cmath>
@@ -20,8 +20,9 @@ using testing::SizeIs;
 
 const flight::Site site{{51.753458, -1.254022, 111.5}, 46.7};
 
-/// Where OpenDroneMap takes an image to look and its top to point, east-north-up: the rotation of
-/// its photo.py (compute_opk), which is in north-east-down, and an image x right, y up, z back.
+/// Returns viewing direction and top of an image in OpenDroneMap's convention, in the east-north-up
+/// frame. The rotation in its photo.py (compute_opk) is in north-east-down, with an image frame of
+/// x right, y up, z back.
 struct Axes {
   Vector3d forward, up;
 };
@@ -44,7 +45,7 @@ Axes odm_axes(const OdmAngles& angles) {
   return {enu(-ned_from_image.col(2)), enu(ned_from_image.col(1))};
 }
 
-// Nadir is pitch -90 in ours and 0 in OpenDroneMap; the horizon is 0 and 90.
+// Nadir is pitch -90 in Skycap and 0 in OpenDroneMap. The horizon is 0 and 90.
 TEST(OdmAngles, CountPitchFromNadir) {
   const survey::photo::PhotoPlan plan = test_plan();
   EXPECT_NEAR(plan.photos[0].pitch * geometry::degrees_per_radian, -90.0, 1e-12);
@@ -53,7 +54,7 @@ TEST(OdmAngles, CountPitchFromNadir) {
   EXPECT_NEAR(odm_angles(plan.photos[1]).yaw_deg, 0.0, 1e-12);
 }
 
-// Property: with OpenDroneMap's rotation the angles give the camera's axes back.
+// Property: OpenDroneMap's rotation with these angles gives the axes of the camera.
 TEST(OdmAngles, GiveTheViewBack) {
   for (double yaw_deg = 0.0; yaw_deg < 360.0; yaw_deg += 30.0) {
     for (double pitch_deg = -85.0; pitch_deg <= 40.0; pitch_deg += 12.5) {
@@ -85,7 +86,7 @@ TEST(PhotoTable, HasARowForEachPhoto) {
   EXPECT_EQ(nadir[10], "-90.0000");
   EXPECT_EQ(nadir[12], "0.050");
   EXPECT_EQ(flight::split(lines[2], ',')[2], "62.50");
-  // Events are counted in each sortie: they are what the camera numbers its photos by.
+  // Events are counted per sortie, as cameras number their photos.
   std::vector<std::string> events, sorties;
   for (std::size_t i = 1; i < lines.size(); ++i) {
     events.push_back(flight::split(lines[i], ',')[1]);
@@ -93,7 +94,7 @@ TEST(PhotoTable, HasARowForEachPhoto) {
   }
   EXPECT_THAT(events, ElementsAre("1", "2", "1", "2"));
   EXPECT_THAT(sorties, ElementsAre("1", "1", "2", "2"));
-  // The geodetic columns are the local ones.
+  // The geodetic columns correspond to the local coordinates.
   const flight::LocalFrame frame(site.origin);
   for (std::size_t i = 1; i < lines.size(); ++i) {
     const auto fields = flight::split(lines[i], ',');

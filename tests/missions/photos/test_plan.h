@@ -1,4 +1,4 @@
-/// A small plan of photos for the tests.
+/// Small plan of photos for tests.
 #pragma once
 
 #include "flight/route/route.h"
@@ -17,7 +17,7 @@ inline geometry::PhotoCameraConfig mavic_3e() {
   return camera;
 }
 
-/// A photo with the angles that follow from its view.
+/// Returns a photo with the angles of its view.
 inline survey::photo::PlannedPhoto photo(const std::string& name, const geometry::View& view) {
   survey::photo::PlannedPhoto photo;
   photo.name = name;
@@ -28,8 +28,8 @@ inline survey::photo::PlannedPhoto photo(const std::string& name, const geometry
   return photo;
 }
 
-/// Straight down, to the north, to the east and a little down, and up to the south-west. The names
-/// are not in the order of the photos.
+/// Returns photos straight down, to the north, slightly down to the east, and up to the south-west.
+/// The names are not in the order of the photos.
 inline survey::photo::PhotoPlan test_plan() {
   survey::photo::PhotoPlan plan;
   plan.camera = mavic_3e();

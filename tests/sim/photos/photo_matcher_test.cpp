@@ -1,4 +1,4 @@
-// The matcher finds depths of a textured wall, and none where there is nothing to match.
+// The matcher finds the depths of a textured wall, and no depths without texture.
 #include "sim/photos/photo_matcher.h"
 
 #include <gmock/gmock.h>
@@ -12,7 +12,7 @@ namespace {
 using Eigen::Vector3d;
 using testing::Each;
 
-/// Photos of a wall, side by side, and samples in front of them.
+/// Photos of a wall from positions side by side, and samples on the wall.
 struct WallPhotos {
   explicit WallPhotos(double contrast, double spacing = 0.9, int count = 4) : scene(wall_at(5.0)) {
     for (int i = 0; i < count; ++i) {
@@ -51,13 +51,13 @@ TEST(PhotoMatcher, FindsNothingWithoutTexture) {
   EXPECT_LT(completeness(photos.right(), 1), 0.2) << "noise alone must not match";
 }
 
-// Two photos of one position have no parallax, and one photo has no partner.
+// Two photos at the same position have no parallax. A single photo has no partner.
 TEST(PhotoMatcher, NeedsParallax) {
   EXPECT_THAT(WallPhotos(1.0, 0.05, 2).right(), Each(0));
   EXPECT_THAT(WallPhotos(1.0, 1.0, 1).right(), Each(0));
 }
 
-// A surface that is not where it is thought to be is not reconstructed there: 5 GSD farther.
+// A surface 5 GSD behind its assumed position is not reconstructed.
 TEST(PhotoMatcher, RejectsWrongDepths) {
   WallPhotos photos(1.0);
   const double gsd = photos.camera.gsd(5.0);

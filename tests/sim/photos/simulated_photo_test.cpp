@@ -1,4 +1,4 @@
-// Simulated photos: exact intrinsics, a texture that sticks to the surface, the same bytes always.
+// Simulated photos: exact intrinsics, solid texture and reproducible bytes.
 #include "sim/photos/simulated_photo.h"
 
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// Properties of the noise: within its range, smooth, not constant, and different by octave.
+// Properties of the noise: bounded, smooth, not constant, and different in each octave.
 TEST(ValueNoise, IsBoundedAndContinuous) {
   geometry::RandomNumbers random(7);
   double sum = 0.0, squares = 0.0, min = 1.0, max = -1.0, same = 0.0;
@@ -42,8 +42,8 @@ TEST(Texture, HasTheContrastThatIsAskedFor) {
   EXPECT_NE(textured_albedo({1, 2, 3}, 0.01, 1.0), textured_albedo({1.01, 2, 3}, 0.01, 1.0));
 }
 
-// A wall in front of the camera: the grey of a pixel is that of the surface point that the camera
-// model puts there, with and without distortion.
+// The grey value of a pixel is that of the wall point at the same pixel in the camera model, with
+// and without distortion.
 TEST(SimulatedPhoto, ShowsEachPointWhereTheCameraProjectsIt) {
   const Scene scene(wall_at(5.0));
   PhotoOptions options{.gsd = 0.2, .to_sun = {0, -1, 0}, .noise = 0.0, .samples_per_side = 1};
@@ -60,7 +60,7 @@ TEST(SimulatedPhoto, ShowsEachPointWhereTheCameraProjectsIt) {
         Vector2d slope =
             (Vector2d(column, row) - camera.principal_point_px()) / camera.focal_length_px();
         if (is_distorted) slope = geometry::undistort(*config.distortion, slope);
-        const Vector3d point(5.0 * slope.x(), 5.0, -5.0 * slope.y());  // image y is down
+        const Vector3d point(5.0 * slope.x(), 5.0, -5.0 * slope.y());  // The image y axis is down.
         EXPECT_NEAR(image.at(column, row), 255.0 * textured_albedo(point, 0.2, 1.0), 1.0)
             << column << " " << row;
       }
@@ -72,7 +72,7 @@ TEST(SimulatedPhoto, HasShadowsGroundAndSky) {
   const Scene scene(wall_at(5.0));
   const geometry::PhotoCamera camera(small_camera());
   PhotoOptions options{.gsd = 0.2, .contrast = 0.0, .ground = -1.0, .noise = 0.0};
-  options.to_sun = {0, 1, 0};  // behind the wall, which is then half as bright
+  options.to_sun = {0, 1, 0};  // The sun is behind the wall, which is then half as bright.
   const GreyImage wall = simulate_photo(scene, camera, {{0, 0, 0}, Vector3d::UnitY()}, options);
   EXPECT_EQ(wall.at(40, 30), 64);
   const GreyImage sky = simulate_photo(scene, camera, {{0, 0, 0}, -Vector3d::UnitY()}, options);
@@ -82,7 +82,7 @@ TEST(SimulatedPhoto, HasShadowsGroundAndSky) {
   EXPECT_EQ(ground.at(40, 55), 96);
 }
 
-// Motion blur: the camera moves by several features of the texture.
+// Motion blur: the camera moves over several features of the texture.
 TEST(SimulatedPhoto, IsBlurredByMotion) {
   const Scene scene(wall_at(5.0));
   const geometry::PhotoCamera camera(small_camera());

@@ -1,4 +1,4 @@
-/// A wall and a small camera for the tests of simulated photos.
+/// Wall and small camera for the tests of simulated photos.
 #pragma once
 
 #include "geometry/pose/photo_camera.h"
@@ -6,7 +6,7 @@
 
 namespace skycap::sim {
 
-/// A wall of 40 x 40 m in the plane y = `distance`, facing the origin.
+/// Returns a wall of 40 x 40 m in the plane y = `distance` that faces the origin.
 inline geometry::Mesh wall_at(double distance) {
   geometry::Mesh mesh;
   mesh.vertices = {
@@ -15,7 +15,7 @@ inline geometry::Mesh wall_at(double distance) {
   return mesh;
 }
 
-/// 80 x 60 px, field of view 60 degrees across.
+/// Returns a camera with 80 x 60 px and a horizontal field of view of 60 degrees.
 inline geometry::PhotoCameraConfig small_camera(int scale = 1) {
   geometry::PhotoCameraConfig camera;
   camera.name = "small";

@@ -33,7 +33,7 @@ class PatternPhotosOfABox : public testing::Test {
   PhotoSpace space_;
 };
 
-/// The distinct values, to a millimetre.
+/// Returns the distinct values, rounded to a millimetre.
 std::vector<double> distinct(std::vector<double> values) {
   std::set<long> found;
   for (const double value : values) found.insert(std::lround(1e3 * value));
@@ -55,7 +55,7 @@ TEST_F(PatternPhotosOfABox, NadirHasSpacingOfItsOverlaps) {
   EXPECT_EQ(columns.size() * rows.size(), nadir.views.size());
   EXPECT_NEAR(columns[1] - columns[0], 0.3 * footprint().x(), 2e-3);
   EXPECT_NEAR(rows[1] - rows[0], 0.2 * footprint().y(), 2e-3);
-  // Over the box and 0.15 d beside it.
+  // The grid covers the box and 0.15 d on each side.
   EXPECT_LE(columns.front(), -6.0 - 0.15 * d + 1e-3);
   EXPECT_GE(columns.back(), 6.0 + 0.15 * d - 1e-3);
   EXPECT_LT(columns.front(), -columns[columns.size() - 2] + 1e-3);
@@ -92,7 +92,7 @@ TEST_F(PatternPhotosOfABox, DomeLooksAtTheMiddleFromItsRadius) {
       EXPECT_LT((view.position + radius * view.direction - Vector3d(0, 0, 2.5)).norm(), 1e-9);
     }
   }
-  EXPECT_EQ(level, 48U);                      // two orbits in steps of 15 degrees
+  EXPECT_EQ(level, 48U);                      // Two orbits in steps of 15 degrees.
   EXPECT_EQ(inclined, 21U + 17U + 12U + 7U);  // 360 cos(elevation) / 15, rounded up
 }
 
@@ -101,7 +101,7 @@ TEST_F(PatternPhotosOfABox, FacadeStandsOffTheHull) {
   std::vector<double> heights;
   std::vector<geometry::View> min_height;
   for (const geometry::View& view : facade.views) {
-    if (view.direction.z() < -0.5) continue;  // of the roof's grid
+    if (view.direction.z() < -0.5) continue;  // Photos of the nadir grid.
     const Eigen::Vector2d at = view.position.head<2>().cwiseAbs() - Eigen::Vector2d(6.0, 4.0);
     EXPECT_NEAR(at.cwiseMax(0.0).norm(), d, 1e-9);
     heights.push_back(view.position.z());

@@ -17,7 +17,7 @@ namespace {
 using Eigen::Vector3d;
 using geometry::View;
 
-/// Photos and samples at random over a level plane, each photo observing samples at random.
+/// Random photos and samples above a level plane. Each photo observes random samples.
 struct RandomCase {
   TargetSamples samples;
   PhotoChoiceProblem problem;
@@ -43,7 +43,7 @@ struct RandomCase {
   }
 };
 
-/// k of a sample by its definition.
+/// Returns k of a sample by its definition.
 int partners_by_definition(const RandomCase& known, const std::vector<std::uint32_t>& chosen,
                            std::uint32_t sample) {
   const StereoPairs pairs(known.problem.rule);
@@ -84,7 +84,7 @@ TEST(PhotoChoice, CountsPartnersAsDefinedWhilePhotosComeAndGo) {
 
 TEST(PhotoChoice, NeverTakesTwoPhotosOfOnePosition) {
   RandomCase known(60, 40, 0.5, 11);
-  for (std::size_t i = 30; i < 60; ++i) {  // every photo twice, a little apart
+  for (std::size_t i = 30; i < 60; ++i) {  // Each photo twice, at slightly different positions.
     known.problem.candidates[i] = known.problem.candidates[i - 30];
     known.problem.candidates[i].position.x() += 0.01;
   }
@@ -126,7 +126,7 @@ TEST(PhotoChoice, DoesNotDependOnThreads) {
 }
 
 TEST(PhotoChoice, CountsPhotosOfOnePositionOnceWhenEvaluated) {
-  // A point under three photos, of which two are at the same position.
+  // Point under three photos, of which two are at the same position.
   const geometry::Mesh target = wall(4.0, 2.0, 4.0);
   const geometry::SightLines visible_targets(target, 1);
   const geometry::PhotoCamera camera(test_camera());
@@ -151,7 +151,8 @@ TEST(PhotoChoice, CountsPhotosOfOnePositionOnceWhenEvaluated) {
   EXPECT_EQ(twice.partners(0), 2);
 }
 
-/// Fewest photos that observe each of the samples so often, by trying all sets.
+/// Returns the minimum number of photos with this number of observations of each sample, by trying
+/// all sets.
 std::size_t fewest_by_brute_force(const PhotoChoiceProblem& problem,
                                   const std::vector<std::uint32_t>& samples, int observations) {
   const auto photos = static_cast<unsigned>(problem.candidates.size());

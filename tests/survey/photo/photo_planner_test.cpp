@@ -16,7 +16,7 @@ namespace {
 using Eigen::Vector3d;
 using testing::HasSubstr;
 
-/// A box of 8 x 6 x 5 m on a plane, with photos from 3 m and a lowest height of 2 m.
+/// Box of 8 x 6 x 5 m on a plane, with a stand-off of 3 m and a minimum height of 2 m.
 class PhotosOfABox : public testing::Test {
  protected:
   PhotosOfABox() {
@@ -53,7 +53,7 @@ class PhotosOfABox : public testing::Test {
 TEST_F(PhotosOfABox, SatisfyAlmostAllThatIsAttainable) {
   const PhotoPlanResult result = plan();
   EXPECT_NEAR(result.view_distance, 8.0, 1e-9);
-  // The floor is inner surface.
+  // The floor of the box is inner surface.
   EXPECT_NEAR(result.exposed_area, 48.0 + 2.0 * 5.0 * (8.0 + 6.0), 2.0);
   const PhotoFigures& figures = result.figures;
   EXPECT_GE(figures.attainable_share(figures.satisfied), 0.96);
@@ -134,7 +134,8 @@ TEST_F(PhotosOfABox, FlyAPatternAsItIs) {
 
 TEST_F(PhotosOfABox, AreRejectedBelowStandOff) {
   options_.gsd = geometry::PhotoCamera(test_camera()).gsd(2.0);
-  EXPECT_THAT(message(), HasSubstr("below limits.stand_off (3 m): at 3 m this camera has 0.8 mm"));
+  EXPECT_THAT(message(),
+              HasSubstr("below limits.stand_off (3 m): at 3 m this camera has a GSD of 0.8 mm"));
 }
 
 TEST_F(PhotosOfABox, AreRejectedBelowTheNearestFocus) {
@@ -156,7 +157,7 @@ TEST_F(PhotosOfABox, AreRejectedForABuriedTarget) {
 TEST(ExposedSamples, OfAWallFaceBothItsSidesByWhatIsFree) {
   const geometry::Mesh target = wall(4.0, 1.0, 4.0);
   geometry::Mesh all = target;
-  add_box(all, {-1, 0.2, 0}, {5, 6, 8});  // a house behind the wall
+  add_box(all, {-1, 0.2, 0}, {5, 6, 8});  // House behind the wall.
   const geometry::SightLines visible_targets(all, 1);
   SampleOptions options;
   options.count = 500;
@@ -167,7 +168,8 @@ TEST(ExposedSamples, OfAWallFaceBothItsSidesByWhatIsFree) {
   for (const Eigen::Vector3f& normal : samples.normals) EXPECT_NEAR(normal.y(), -1.0F, 1e-6F);
 }
 
-// A grid of photos that face a wall observes each point as often as the spacing says.
+// In a grid of photos that face a wall, the spacing determines the number of observations of each
+// point.
 TEST(ObservedSamples, OfAFacadeGridAreThoseOfItsFootprints) {
   const geometry::Mesh target = wall(40.0, 5.0, 10.0);
   const geometry::SightLines visible_targets(target, 1);

@@ -20,7 +20,8 @@ using testing::HasSubstr;
 
 constexpr double degree = geometry::radians_per_degree;
 
-/// Observations of a point of a level surface from azimuth 0 at these angles from the normal.
+/// Returns observations of a point on a level surface from azimuth 0 at these angles from the
+/// normal.
 std::vector<Observation> observations_at(const std::vector<double>& angles_deg, float distance) {
   std::vector<Observation> result;
   for (const double angle : angles_deg) {
@@ -44,12 +45,12 @@ TEST(StereoPartners, CountPairsOfSuitableParallax) {
   };
   EXPECT_EQ(partners({}), -2);
   EXPECT_EQ(partners({0}), -1);
-  EXPECT_EQ(partners({0, 4}), 0);  // parallax too small
+  EXPECT_EQ(partners({0, 4}), 0);  // Parallax too small.
   EXPECT_EQ(partners({0, 6}), 1);
-  EXPECT_EQ(partners({-25, 25}), 0);   // parallax too large
-  EXPECT_EQ(partners({0, 6, -6}), 2);  // of the one in the middle
+  EXPECT_EQ(partners({-25, 25}), 0);   // Parallax too large.
+  EXPECT_EQ(partners({0, 6, -6}), 2);  // Partners of the middle observation.
   EXPECT_EQ(partners({0, 10, 20, 30}), 3);
-  EXPECT_EQ(partners({0, 30, 60}), 2);  // the outer two are too far apart
+  EXPECT_EQ(partners({0, 30, 60}), 2);  // The parallax of the outer two is too large.
 }
 
 TEST(StereoPartners, HaveDistancesWithinAFactorOfTwo) {
@@ -75,7 +76,7 @@ TEST(Reconstructability, UsesTheBest32Observations) {
     many[i].ray = Vector3f(std::sin(angle), 0.0F, std::cos(angle));
   }
   const double best = reconstructability(many, pairs);
-  many.push_back(observations_at({40}, 11.0F).front());  // farther away than all others
+  many.push_back(observations_at({40}, 11.0F).front());  // Farther away than all others.
   EXPECT_DOUBLE_EQ(reconstructability(many, pairs), best);
 }
 

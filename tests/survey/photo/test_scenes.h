@@ -1,4 +1,4 @@
-/// Small targets for tests of photos.
+/// Small targets for tests of photo planning.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace skycap::survey::photo {
 
-/// The camera of a Mavic 3E.
+/// Returns the camera of a Mavic 3E.
 inline geometry::PhotoCameraConfig test_camera() {
   return {.name = "test camera",
           .focal_length = 12.29e-3,
@@ -34,7 +34,8 @@ inline void add_box(geometry::Mesh& mesh, const Eigen::Vector3d& low, const Eige
   }
 }
 
-/// An upright wall in the plane y = 0, seen from the south: x from 0 to `width`, z from `low`.
+/// Returns a vertical wall in the plane y = 0, visible from the south: x from 0 to `width`, z from
+/// `low`.
 inline geometry::Mesh wall(double width, double low, double height) {
   geometry::Mesh mesh;
   mesh.vertices = {{0, 0, low}, {width, 0, low}, {width, 0, low + height}, {0, 0, low + height}};

@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 using geometry::View;
 using testing::ElementsAre;
 
-/// Photos that face a long wall from 8 m, at these places along it.
+/// Returns photos that face a long wall from 8 m, at these positions along it.
 class PhotosOfAWall : public testing::Test {
  protected:
   PhotosOfAWall() : target_(wall(60.0, 2.0, 4.0)), sights_(target_, 1) {
@@ -40,8 +40,8 @@ class PhotosOfAWall : public testing::Test {
 };
 
 TEST_F(PhotosOfAWall, ConnectWhereTheyShareHalf) {
-  // A footprint is 11.3 m wide, less its border 10.9 m: 4 m apart they share 63%, 8 m apart
-  // 27%.
+  // The footprint is 11.3 m wide, or 10.9 m without its border. Photos 4 m apart share 63%, photos
+  // 8 m apart 27%.
   const std::vector<View> photos = photos_at({10, 14, 18, 40, 44, 55});
   const ViewGraph graph = view_graph(photos, observed(photos), samples_, {}, 2);
   EXPECT_THAT(graph.part, ElementsAre(0, 0, 0, 1, 1, 2));

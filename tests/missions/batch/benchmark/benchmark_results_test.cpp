@@ -283,7 +283,7 @@ TEST(OtherResults, NameWhatIsWrong) {
   EXPECT_THAT(trial(R"("coverage_after": [0.5, 1.5], "distance_after_m": [0, 1])"),
               HasSubstr("trial 1: coverage_after must be a number from 0 to 1"));
   EXPECT_THAT(trial(R"("coverage_after": [0.5, 0.6], "distance_after_m": [0])"),
-              HasSubstr("distance_after_m has 1 numbers; it must have 2"));
+              HasSubstr("distance_after_m has 1 numbers; expected 2"));
   EXPECT_THAT(trial(R"("coverage_after": [0.5, 0.6], "distance_after_m": [2, 1])"),
               HasSubstr("distance_after_m must not decrease"));
   EXPECT_THAT(trial(R"("coverage_after": [0.5], "distance_after_m": [0], "stop_reason": "tired")"),

@@ -13,7 +13,7 @@ namespace {
 using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
-/// A camera of 90 by 90 degrees.
+/// Returns a camera with a field of view of 90 by 90 degrees.
 geometry::CameraConfig square_camera(double max_range = 1e4) {
   return {.width = 100,
           .height = 100,
@@ -28,7 +28,7 @@ geometry::Scan scan_from(const Vector3d& position, const Vector3d& direction) {
   return scan;
 }
 
-// From the middle of a cube each of six views sees one face, edge to edge.
+// Each of six views from the centre of a cube covers exactly one face.
 TEST(BoxSight, CountsWhatWasNeverInView) {
   const AlignedBox3d cube(Vector3d::Constant(-1.0), Vector3d::Constant(1.0));
   BoxSight visibility(cube, square_camera());
