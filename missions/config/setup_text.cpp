@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "geometry/angle.h"
+#include "missions/config/key_texts.h"
 #include "missions/config/mission_keys.h"
 #include "missions/support/number_text.h"
 
@@ -145,7 +146,9 @@ std::string setup_text(const MissionSetup& setup) {
   Lines lines;
   lines.value("mission", setup.name);
   lines.section("keys");
-  for (const Key& key : mission_keys()) lines.value(key.path, setup.text(key.path));
+  for (const Key& key : mission_keys()) {
+    if (applies(key, *setup.document)) lines.value(key.path, setup.text(key.path));
+  }
   lines.end();
   lines.section("derived");
   add_camera(setup.survey().planner.camera, lines);

@@ -203,7 +203,7 @@ TEST_F(Ros2LiveSurvey, RejectsMissingServerAndInvalidTopics) {
                                            std::to_string(domain_), "--cloud", "points"},
                   folder_ / "bridge.log");
   EXPECT_EQ(bridge_->exit_code(), 2);
-  EXPECT_THAT(bridge_->log_text(), HasSubstr("the topic 'points' must begin with /"));
+  EXPECT_THAT(bridge_->log_text(), HasSubstr("the topic 'points' must begin with '/'"));
 }
 
 /// What a driver sends, over and over.

@@ -80,7 +80,7 @@ TEST(WpmlInterpreter, RejectsChangedMissionSettings) {
   EXPECT_THAT(with_template("<wpml:globalUseStraightLine>1", "<wpml:globalUseStraightLine>0"),
               Contains(HasSubstr("leaves the straight legs")));
   EXPECT_THAT(with_both("<wpml:droneEnumValue>89", "<wpml:droneEnumValue>77"),
-              Contains(HasSubstr("\"m350_rtk\" is 89")));
+              Contains(HasSubstr("\"m350_rtk\" has 89")));
 }
 
 TEST(WpmlInterpreter, ReportsProblemsWithWaypointIndex) {

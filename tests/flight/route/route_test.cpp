@@ -107,8 +107,9 @@ TEST(Route, OmitsCapturePointsWithoutVerifiedPath) {
   ASSERT_EQ(route.capture_points.size(), 2U);
   ASSERT_EQ(route.unreached.size(), 1U);
   EXPECT_EQ(route.unreached[0].capture_point.view_index, 2U);
-  EXPECT_EQ(route.unreached[0].reason,
-            "the path to it cannot be verified with a clearance of 2.000 m");
+  EXPECT_EQ(
+      route.unreached[0].reason,
+      "the path to it cannot be verified with a clearance of 2.000 m; lower flight.clearance");
   for (const Sortie& sortie : route.sorties) {
     EXPECT_THAT(check_route(sortie_points(route, sortie), space, 2.0), testing::IsEmpty());
   }

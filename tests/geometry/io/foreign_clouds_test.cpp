@@ -260,7 +260,7 @@ TEST_F(ForeignCloud, TreatsZeroE57RotationAsIdentity) {
     EXPECT_THAT(cloud.positions, ElementsAre(Vector3f(11, 2, 3), Vector3f(10, 0, 0))) << rotation;
   }
   EXPECT_THAT(error_message("a.e57", e57_with("<rotation><w>2</w></rotation>", 0.0)),
-              HasSubstr("of length 2.000000; it must be 1: save the scan again"));
+              HasSubstr("quaternion has length 2.000000; it must be 1: save the scan again"));
 }
 
 TEST_F(ForeignCloud, SkipsInfinitePointsOfE57) {

@@ -164,10 +164,11 @@ class CorruptedLaz : public testing::Test {
 
 TEST_F(CorruptedLaz, ReportsUnsupportedCompression) {
   for (const int format : {4, 5, 9, 10}) {
-    expect_rejection(104, static_cast<std::uint8_t>(0x80 | format),
-                     "points of format " + std::to_string(format) + ", compressed (LAZ); only");
+    expect_rejection(
+        104, static_cast<std::uint8_t>(0x80 | format),
+        "points of format " + std::to_string(format) + ", compressed (LAZ); supported");
   }
-  expect_rejection(104, std::uint8_t{0xC7}, "points of format 71, compressed (LAZ); only");
+  expect_rejection(104, std::uint8_t{0xC7}, "points of format 71, compressed (LAZ); supported");
   expect_rejection(record_ - 54 + 18, std::uint16_t{1}, "the LAZ record is missing");
   expect_rejection(record_ - 54 + 20, std::uint16_t{40}, "it ends too early");
   expect_rejection(record_, std::uint16_t{1}, "is compressed by LAZ method 1");

@@ -17,8 +17,8 @@ Mesh random_mesh(std::size_t count, std::uint64_t seed) {
   RandomNumbers random(seed);
   Mesh mesh;
   const auto point = [&](double low, double high) {
-    return Vector3d(random.between(low, high), random.between(low, high),
-                    random.between(low, high));
+    return Vector3d{random.between(low, high), random.between(low, high),
+                    random.between(low, high)};
   };
   for (std::uint32_t t = 0; t < count; ++t) {
     const Vector3d corner = point(0.0, 10.0);
@@ -50,8 +50,8 @@ TEST(SightLines, FindTheFirstTriangleAsBruteForceDoes) {
   RandomNumbers random(4);
   int hits = 0;
   for (int i = 0; i < 2000; ++i) {
-    const Vector3d origin(random.between(-2, 12), random.between(-2, 12), random.between(-2, 12));
-    const Vector3d target(random.between(0, 10), random.between(0, 10), random.between(0, 10));
+    const Vector3d origin{random.between(-2, 12), random.between(-2, 12), random.between(-2, 12)};
+    const Vector3d target{random.between(0, 10), random.between(0, 10), random.between(0, 10)};
     const Vector3d direction = (target - origin).normalized();
     const auto expected = brute_force(mesh, origin, direction, 20.0);
     const auto found = visible_targets.first_hit(origin, direction, 20.0);

@@ -131,8 +131,8 @@ TEST_F(Library, EvaluatesCloudDistanceAndCoverage) {
 
 TEST_F(Library, FindsSensorsByName) {
   for (const std::string& name : testing_support::not_empty(sensor_names())) {
-    const bool is_camera =
-        name.starts_with("intel_") || name.starts_with("see_") || name == "dji_zenmuse_p1";
+    const bool is_camera = name.starts_with("intel_") || name.starts_with("see_") ||
+                           name.ends_with("_wide") || name == "dji_zenmuse_p1";
     if (is_camera) {
       EXPECT_NO_THROW(depth_camera(name)) << name;
       EXPECT_THAT(testing_support::thrown_message([&] { laser_scanner(name); }),

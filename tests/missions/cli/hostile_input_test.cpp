@@ -57,7 +57,7 @@ TEST(HostileInput, RejectsDeeplyNestedJson) {
   }
   folder.write("summary.json", deep);
   EXPECT_THAT(rejection({"export", folder.path().string(), "--format", "csv"}),
-              HasSubstr("summary.json: is not a package's summary"));
+              HasSubstr("summary.json: is not the summary of a package"));
 }
 
 TEST(HostileInput, RejectsPackagesWithPositionsOutOfRange) {

@@ -45,7 +45,7 @@ class ResumedPlan : public testing::Test {
 
   /// Plans into "part" until that many views are taken.
   void interrupt_after(int views, const std::vector<std::string>& more = {}) const {
-    CtrlC keys("view " + std::to_string(views) + ",");
+    CtrlC keys("view " + std::to_string(views) + " of");
     std::ostringstream out;
     std::ostream err(&keys);
     EXPECT_EQ(cli::run_command_line(plan("part", more), {out, err, true, keys.token()}), 1);

@@ -201,10 +201,10 @@ TEST_F(Site, ReportsMissingOptions) {
   EXPECT_THAT(propose("--id DEBY_1 --at 48,11").err, HasSubstr("mutually exclusive"));
   EXPECT_FALSE(std::filesystem::exists(folder_.path() / "house.yaml"));
   std::ofstream(folder_.path() / "house.yaml") << "mine";
-  EXPECT_THAT(propose("--id DEBY_1").err, HasSubstr("house.yaml exists"));
+  EXPECT_THAT(propose("--id DEBY_1").err, HasSubstr("house.yaml already exists"));
   EXPECT_EQ(read_content(folder_.path() / "house.yaml"), "mine");
   std::filesystem::rename(folder_.path() / "house.yaml", folder_.path() / "house.html");
-  EXPECT_THAT(propose("--id DEBY_1").err, HasSubstr("house.html exists"));
+  EXPECT_THAT(propose("--id DEBY_1").err, HasSubstr("house.html already exists"));
   EXPECT_EQ(read_content(folder_.path() / "house.html"), "mine");
   EXPECT_FALSE(std::filesystem::exists(folder_.path() / "house.yaml"));
 }

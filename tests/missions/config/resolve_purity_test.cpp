@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/error.h"
+#include "missions/config/key_texts.h"
 #include "missions/config/mission_keys.h"
 #include "missions/config/resolve.h"
 #include "missions/session/initial_pattern_flight.h"
@@ -35,7 +36,9 @@ using Numbers = std::map<std::string, double>;
 
 Texts make_texts(const MissionSetup& setup) {
   Texts texts;
-  for (const config::Key& key : config::mission_keys()) texts[key.path] = setup.text(key.path);
+  for (const config::Key& key : config::mission_keys()) {
+    if (config::applies(key, *setup.document)) texts[key.path] = setup.text(key.path);
+  }
   return texts;
 }
 

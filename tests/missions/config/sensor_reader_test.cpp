@@ -151,7 +151,7 @@ TEST(FindSensor, ListsKnownSensorsWhenUnknown) {
     config::find_sensor("ouster");
     FAIL() << "found";
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("expected one of: dji_zenmuse_l1"));
+    EXPECT_THAT(error.what(), HasSubstr("expected one of: dji_m30t_wide"));
   }
   EXPECT_THAT(testing_support::thrown_message([&] { config::find_sensor("no/such/file.yaml"); }),
               testing::HasSubstr("no/such/file.yaml: "));

@@ -38,7 +38,7 @@ std::vector<Vector3f> random_points(std::size_t count, std::uint64_t seed) {
   std::uniform_real_distribution<float> position(-2.0F, 12.0F), up(-0.3F, 5.3F);
   std::vector<Vector3f> points;
   for (std::size_t i = 0; i < count; ++i)
-    points.emplace_back(position(random), position(random), up(random));
+    points.push_back(Vector3f{position(random), position(random), up(random)});
   return points;
 }
 

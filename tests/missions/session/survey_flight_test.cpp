@@ -403,7 +403,7 @@ TEST(FlightPackage, KeepsSurveyWithoutRoute) {
   const auto quiet = plan("quiet", {"--quiet"});
   EXPECT_EQ(quiet.exit_code, 1);
   EXPECT_EQ(quiet.out, "");
-  EXPECT_THAT(quiet.err, HasSubstr("m.yaml: no route: the point above the take-off point"));
+  EXPECT_THAT(quiet.err, HasSubstr("m.yaml: no route: the end of the take-off climb"));
   const auto run = plan("out", {});
   EXPECT_EQ(run.exit_code, 1) << run.err;
   EXPECT_THAT(run.out, HasSubstr("flight    none: the end of the take-off climb"));
@@ -433,7 +433,7 @@ TEST(FlightPackage, ReportsDamagedPackagesAndRoutes) {
   const TestFolder broken;
   broken.write("summary.json", "{\"mission\": 3");
   EXPECT_THAT(message({"export", broken.path().string(), "--format", "kml"}),
-              HasSubstr("summary.json: is not a package's summary"));
+              HasSubstr("summary.json: is not the summary of a package"));
   broken.write("summary.json", read_content(folder / "out/summary.json"));
   EXPECT_THAT(message({"export", broken.path().string(), "--format", "kml"}),
               HasSubstr("free_space.bin: cannot be read; plan the mission again"));

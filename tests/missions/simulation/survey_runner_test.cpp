@@ -286,7 +286,7 @@ TEST(Plan, ShowsProgressOnlyOnTerminalUnlessQuiet) {
   const std::vector<std::string> plain{"plan",         mission,       "--out",
                                        folder / "out", "--max-views", "2"};
   const auto on_terminal = run_skycap(plain, true);
-  EXPECT_THAT(on_terminal.err, HasSubstr("view 2, "));
+  EXPECT_THAT(on_terminal.err, HasSubstr("view 2 of at most 2, "));
   EXPECT_THAT(on_terminal.err, HasSubstr("frontiers"));
   EXPECT_THAT(on_terminal.out, HasSubstr("view_limit after 2 views"));
   EXPECT_EQ(run_skycap(plain).err, "");

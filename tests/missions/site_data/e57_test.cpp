@@ -56,9 +56,10 @@ TEST_F(E57File, KeepsPositionsOfSkycapScans) {
 
 TEST_F(E57File, IsRejectedAsTerrainTargetOrGroundTruth) {
   for (const Role role : {Role::terrain, Role::target, Role::truth}) {
-    EXPECT_THAT([&] { read(make_e57(cube_), [&](Source& s) { s.role = role; }); },
-                ThrowsMessage<Error>(testing::AnyOf(HasSubstr("scan.e57: contains no surfaces"),
-                                                    HasSubstr("scan.e57: is a point cloud"))));
+    EXPECT_THAT(
+        [&] { read(make_e57(cube_), [&](Source& s) { s.role = role; }); },
+        ThrowsMessage<Error>(testing::AnyOf(HasSubstr("scan.e57: contains no object surfaces"),
+                                            HasSubstr("scan.e57: is a point cloud"))));
   }
 }
 

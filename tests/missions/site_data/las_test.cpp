@@ -43,9 +43,10 @@ TEST_F(Las, KeepsSelectedClasses) {
 
 TEST_F(Las, IsRejectedAsTerrainTargetOrGroundTruth) {
   for (const Role role : {Role::terrain, Role::target, Role::truth}) {
-    EXPECT_THAT([&] { read(make_las(cube_, 4, 6), [&](Source& s) { s.role = role; }); },
-                ThrowsMessage<Error>(testing::AnyOf(HasSubstr("scan.las: contains no surfaces"),
-                                                    HasSubstr("scan.las: is a point cloud"))));
+    EXPECT_THAT(
+        [&] { read(make_las(cube_, 4, 6), [&](Source& s) { s.role = role; }); },
+        ThrowsMessage<Error>(testing::AnyOf(HasSubstr("scan.las: contains no object surfaces"),
+                                            HasSubstr("scan.las: is a point cloud"))));
   }
 }
 

@@ -23,7 +23,7 @@ TEST(ValueNoise, IsBoundedAndContinuous) {
   double sum = 0.0, squares = 0.0, min = 1.0, max = -1.0, same = 0.0;
   constexpr int count = 4000;
   for (int i = 0; i < count; ++i) {
-    const Vector3d point(random.between(-90, 90), random.between(-90, 90), random.between(-9, 9));
+    const Vector3d point{random.between(-90, 90), random.between(-90, 90), random.between(-9, 9)};
     const double value = value_noise(point, 0);
     min = std::min(min, value), max = std::max(max, value);
     sum += value, squares += value * value;

@@ -25,12 +25,12 @@ struct RandomCase {
   RandomCase(std::size_t photos, std::size_t count, double observed, std::uint64_t seed) {
     geometry::RandomNumbers random(seed);
     for (std::size_t s = 0; s < count; ++s) {
-      samples.points.emplace_back(random.between(-2, 2), random.between(-2, 2), 0.0);
+      samples.points.push_back(Vector3d{random.between(-2, 2), random.between(-2, 2), 0.0});
       samples.normals.emplace_back(0, 0, 1);
       samples.triangles.push_back(0);
     }
     for (std::size_t c = 0; c < photos; ++c) {
-      const Vector3d position(random.between(-5, 5), random.between(-5, 5), random.between(5, 12));
+      const Vector3d position{random.between(-5, 5), random.between(-5, 5), random.between(5, 12)};
       problem.candidates.push_back({position, -Vector3d::UnitZ()});
       for (std::uint32_t s = 0; s < count; ++s) {
         if (random.uniform() < observed) problem.observed.items.push_back(s);
