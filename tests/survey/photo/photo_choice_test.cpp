@@ -25,7 +25,8 @@ struct RandomCase {
   RandomCase(std::size_t photos, std::size_t count, double observed, std::uint64_t seed) {
     geometry::RandomNumbers random(seed);
     for (std::size_t s = 0; s < count; ++s) {
-      samples.points.push_back(Vector3d{random.between(-2, 2), random.between(-2, 2), 0.0});
+      samples.points.push_back(
+          Vector3d{random.between(-2, 2), random.between(-2, 2), 0.0}.cast<float>());
       samples.normals.emplace_back(0, 0, 1);
       samples.triangles.push_back(0);
     }
