@@ -187,7 +187,7 @@ void bind_planner(py::module_& module) {
           "cloud() are alive.\nOther threads must not modify the arrays during the call.")
       .def("replacement_view", &Planner::next_alternative_view,
            "replacement_view($self)\n--\n\nAnother view instead of the last one, which is "
-           "unreachable; None when there is none left.")
+           "unreachable; None if no view remains.")
       .def(
           "next_view_instead",
           [](Planner& planner) {

@@ -84,7 +84,7 @@ Json surface_summary(const session::SurveyRecord& record, const CoverageFigures&
                      {"centre", to_json(hole.centre)},
                      {"normal", to_json(hole.normal)},
                      {"radius_m", hole.radius},
-                     {"pieces", hole.hole_patches},
+                     {"pieces", hole.num_patches},
                      {"nearest_view", hole.nearest_view},
                      {"view_distance_m", hole.view_distance}});
   }
