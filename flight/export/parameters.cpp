@@ -209,7 +209,7 @@ class ParameterWriter {
   std::string text_;
 };
 
-/// Parses the parameter in a line of either format. Returns std::nullopt if there is none.
+/// Parses the parameter in a line of either format. Returns std::nullopt without one.
 ///
 /// Mission Planner separates name and value by a comma, MAVProxy by blanks. QGroundControl
 /// separates five fields by tabs.

@@ -9,7 +9,7 @@ namespace {
 constexpr double max_repeats = 20.0;    // Higher values are assumed to be mistakes.
 constexpr std::size_t max_growth = 10;  // Maximum growth of a mission by its jumps.
 
-/// Returns the target index of a jump, or the size of `items` if there is none.
+/// Returns the target index of a jump, or the size of `items` without a target.
 std::size_t find_jump_target(const MissionItem& jump, const std::vector<MissionItem>& items) {
   const auto target = std::ranges::find_if(items, [&](const MissionItem& item) {
     return static_cast<double>(item.number) == jump.params[0];

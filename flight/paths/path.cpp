@@ -129,7 +129,7 @@ class Search {
   }
 
   /// SetVertex of Lazy Theta*: the leg from the parent was assumed free. If it is not, the best
-  /// settled neighbour becomes the parent. Returns false if there is none.
+  /// settled neighbour becomes the parent. Returns false if no such neighbour exists.
   bool settle(std::uint32_t v) {
     if (v == 0 || is_leg_free(vertices_[v].parent, v)) {
       vertices_[v].is_closed = true;

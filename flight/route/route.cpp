@@ -31,7 +31,7 @@ class RoutePlanner {
 
   Route plan(std::vector<CapturePoint> capture_points, const FreeSpace* pad_space) {
     check_pad(space_, pad_space, route_.options);
-    legs_.set_executed_stations(capture_points);
+    legs_.set_executed_capture_points(capture_points);
     capture_points = legs_.allowed(std::move(capture_points));
     if (route_.options.order_is_free) choose_order(capture_points);
     legs_.admit(capture_points);

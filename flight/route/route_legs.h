@@ -23,7 +23,7 @@ class RouteLegs {
   RouteLegs(const Vehicle& vehicle, const FreeSpace& space, const RouteOptions& options);
 
   /// Sets the waypoints that the survey flew, in its order.
-  void set_executed_stations(std::vector<CapturePoint> capture_points) {
+  void set_executed_capture_points(std::vector<CapturePoint> capture_points) {
     executed_ = std::move(capture_points);
   }
 

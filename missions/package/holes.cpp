@@ -92,7 +92,7 @@ Sets connected(std::span<const EstimatedPatch> hole_patches, double usual) {
 
 Hole make_hole(std::span<const EstimatedPatch> hole_patches,
                const std::vector<std::size_t>& members, std::span<const geometry::View> views) {
-  Hole hole{.reason = hole_patches[members.front()].reason, .hole_patches = members.size()};
+  Hole hole{.reason = hole_patches[members.front()].reason, .num_patches = members.size()};
   Vector3d normal = Vector3d::Zero();
   for (const std::size_t i : members) {
     const double area = missing_area(hole_patches[i]);

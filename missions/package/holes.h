@@ -19,7 +19,7 @@ struct Hole {
   survey::surfel::MissingReason reason = survey::surfel::MissingReason::none;
   /// Missing area: the sum over patches of area times (1 - expected coverage) [m^2].
   double area = 0.0;
-  std::size_t hole_patches = 0;
+  std::size_t num_patches = 0;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< Mean position, weighted by missing area.
   /// Unit vector; zero if the patches face in all directions.
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();

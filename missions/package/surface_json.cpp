@@ -23,7 +23,7 @@ Json missing_json(const MissingSurface& missing, const char* known_by) {
                      {"centre", support::to_json(hole.centre)},
                      {"normal", support::to_json(hole.normal)},
                      {"radius_m", hole.radius},
-                     {"pieces", hole.hole_patches},
+                     {"pieces", hole.num_patches},
                      {"nearest_view", hole.nearest_view},
                      {"view_distance_m", hole.view_distance}});
   }

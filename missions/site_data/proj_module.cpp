@@ -70,7 +70,7 @@ class OperationFinder {
       : context_(context), near_(near) {}
 
   /// Returns the best operation with available grids, and whether it is the best of all. Returns an
-  /// empty object if there is none.
+  /// empty object if it does not exist.
   Operation find(const PJ* from, const char* target) const {
     const ObjectPtr to(proj_create(context_, target));
     const std::unique_ptr<PJ_OBJ_LIST, Destroy> list(

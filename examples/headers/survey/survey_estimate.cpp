@@ -4,7 +4,7 @@
 
 #include "example.h"
 
-// A wall of 3 m^2, half of it missing, and 1 m^2 behind it that nobody has seen.
+// A wall of 3 m^2, half of it missing, and 1 m^2 of unobserved surface behind it.
 const Example survey_estimate_example("survey/survey_estimate", [] {
   using skycap::survey::surfel::MissingReason;
   skycap::survey::surfel::SurveyEstimate estimate;
