@@ -157,7 +157,7 @@ class WpmlFlight {
                          waypoint(index), speed, is_recording_, heading_deg_, read_heading(mark),
                          pitch_deg_});
       }
-      speed = child_number(mark, "waypointSpeed");
+      speed = read_speed(mark);
       check_waypoint(mark, index);
       heading_deg_ = read_heading(mark);
       act(mark, positions[index], index);
@@ -174,6 +174,12 @@ class WpmlFlight {
   }
 
  private:
+  /// Returns the speed on the leg from this waypoint, the global one if the waypoint uses it [m/s].
+  double read_speed(pugi::xml_node mark) const {
+    const bool is_global = child_text(mark, "useGlobalSpeed") == "1";
+    return is_global ? child_number(folder_, "autoFlightSpeed") : child_number(mark, "waypointSpeed");
+  }
+
   bool is_template() const { return file_ == "template.kml"; }
 
   static std::string waypoint(std::size_t index) { return "waypoint " + std::to_string(index); }

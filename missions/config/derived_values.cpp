@@ -284,7 +284,8 @@ survey::ViewLimits view_limits(const MissionDocument& document) {
     const flight::Vehicle& vehicle = document.flight.options.required_vehicle();
     constexpr double hair = 1e-5;  // tolerance, so that the pitch interval is not empty
     if (!sensor.mount) {           // only cameras are mounted on a gimbal
-      const double margin = vehicle.gimbal_min == vehicle.gimbal_max ? hair : 0.0;
+      // Less than the tolerance of flight::can_aim().
+      const double margin = vehicle.gimbal_min == vehicle.gimbal_max ? 5e-7 : 0.0;
       result.min_pitch = std::max(result.min_pitch, vehicle.gimbal_min - margin);
       result.max_pitch = std::min(result.max_pitch, vehicle.gimbal_max + margin);
     } else if (find_scanner_kind(*sensor.scanner) == ScannerKind::rosette) {

@@ -1,6 +1,7 @@
 #include "missions/evaluation/surface_density.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <bit>
 #include <cmath>
@@ -18,8 +19,8 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr double max_places = 1e6;
-constexpr std::uint64_t places_seed = 3;  ///< Differs from the seed of the coverage samples.
+constexpr double max_samples = 1e6;
+constexpr std::uint64_t samples_seed = 3;  ///< Differs from the seed of the coverage samples.
 
 /// Returns the class of a normal. Surfaces steeper than 45 degrees are walls.
 SurfaceClass read_class(const Vector3f& normal) {
@@ -28,12 +29,70 @@ SurfaceClass read_class(const Vector3f& normal) {
   return normal.z() > 0.0F ? SurfaceClass::roof : SurfaceClass::underside;
 }
 
+using Triangle = std::array<Vector3d, 3>;
+
+Triangle triangle_corners(const geometry::Mesh& mesh, const std::array<std::uint32_t, 3>& indices) {
+  return {mesh.vertices[indices[0]], mesh.vertices[indices[1]], mesh.vertices[indices[2]]};
+}
+
+/// Returns a vector along the normal of the triangle. Its length is twice the area.
+Vector3d triangle_area_vector(const geometry::Mesh& mesh,
+                              const std::array<std::uint32_t, 3>& indices) {
+  const Triangle corners = triangle_corners(mesh, indices);
+  return (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+}
+
+double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+/// Returns the signed area of the intersection of a disc around the origin and the triangle of the
+/// origin, `from` and `to`.
+double signed_area_within(const Vector2d& from, const Vector2d& to, double radius) {
+  const auto sector = [&](const Vector2d& a, const Vector2d& b) {
+    return 0.5 * radius * radius * std::atan2(cross(a, b), a.dot(b));
+  };
+  const Vector2d edge = to - from;
+  const double a = edge.squaredNorm(), b = from.dot(edge), c = from.squaredNorm() - radius * radius,
+               discriminant = b * b - a * c;
+  if (!(discriminant > 0.0)) return sector(from, to);
+  // The edge is inside the disc between these two fractions of its length.
+  const double root = std::sqrt(discriminant);
+  const double first = std::max(0.0, (-b - root) / a), last = std::min(1.0, (-b + root) / a);
+  if (first >= last) return sector(from, to);
+  const Vector2d enters = from + first * edge, leaves = from + last * edge;
+  return sector(from, enters) + 0.5 * cross(enters, leaves) + sector(leaves, to);
+}
+
+/// Returns the area of the triangle within `radius` of `centre`: the intersection of the triangle
+/// and a disc in its plane [m^2].
+double area_within(const Triangle& triangle, const Vector3d& centre, double radius) {
+  const Vector3d edge = triangle[1] - triangle[0], normal = edge.cross(triangle[2] - triangle[0]);
+  const double doubled_area = normal.norm();
+  if (!(doubled_area > 0.0)) return 0.0;
+  const bool is_inside = std::ranges::all_of(triangle, [&](const Vector3d& corner) {
+    return (corner - centre).squaredNorm() <= radius * radius;
+  });
+  if (is_inside) return 0.5 * doubled_area;
+  const double height = (centre - triangle[0]).dot(normal) / doubled_area,
+               squared = radius * radius - height * height;
+  if (!(squared > 0.0)) return 0.0;
+  const Vector3d x = edge.normalized(), y = normal.cross(x) / doubled_area;
+  std::array<Vector2d, 3> corners;
+  for (std::size_t i = 0; i < 3; ++i) {
+    corners[i] = {(triangle[i] - centre).dot(x), (triangle[i] - centre).dot(y)};
+  }
+  double area = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    area += signed_area_within(corners[i], corners[(i + 1) % 3], std::sqrt(squared));
+  }
+  return std::max(0.0, area);
+}
+
 geometry::SurfaceSamples spread(const geometry::Mesh& mesh, double spacing,
                                 double& area_per_point) {
   const double area = geometry::surface_area(mesh);
-  const double count = std::clamp(std::ceil(area / (spacing * spacing)), 1.0, max_places);
+  const double count = std::clamp(std::ceil(area / (spacing * spacing)), 1.0, max_samples);
   area_per_point = area / count;
-  return geometry::sample_surface(mesh, static_cast<std::size_t>(count), places_seed);
+  return geometry::sample_surface(mesh, static_cast<std::size_t>(count), samples_seed);
 }
 
 DensityFigures compute_figures(std::vector<std::pair<double, double>> densities_and_areas,
@@ -162,44 +221,57 @@ const char* to_string(SurfaceClass of) {
   return "ground";
 }
 
-DensityPlaces density_places(const geometry::Mesh& model, const geometry::Mesh& surroundings,
-                             double spacing, double margin) {
-  DensityPlaces positions;
+DensitySamples density_samples(const geometry::Mesh& model, const geometry::Mesh& surroundings,
+                               double spacing, double margin) {
+  DensitySamples samples;
+  samples.surface = model;
   double area = 0.0;
   const geometry::SurfaceSamples own = spread(model, spacing, area);
-  positions.positions = own.points;
-  for (const Vector3f& normal : own.normals) positions.classes.push_back(read_class(normal));
-  positions.areas.assign(own.points.size(), area);
-  if (surroundings.triangles.empty()) return positions;
+  samples.positions = own.points;
+  for (const Vector3f& normal : own.normals) samples.classes.push_back(read_class(normal));
+  samples.areas.assign(own.points.size(), area);
+  if (surroundings.triangles.empty()) return samples;
   Eigen::AlignedBox3d box = geometry::bounding_box(model);
   box.min().array() -= margin;
   box.max().array() += margin;
-  const geometry::SurfaceSamples others = spread(surroundings, spacing, area);
-  for (std::size_t i = 0; i < others.points.size(); ++i) {
-    const bool is_level = read_class(others.normals[i]) == SurfaceClass::roof;
-    if (!is_level || !box.contains(others.points[i].cast<double>())) continue;
-    positions.positions.push_back(others.points[i]);
-    positions.classes.push_back(SurfaceClass::ground);
-    positions.areas.push_back(area);
+  geometry::Mesh ground{.vertices = surroundings.vertices, .triangles = {}};
+  for (const auto& triangle : surroundings.triangles) {
+    const Vector3d normal = triangle_area_vector(surroundings, triangle);
+    if (read_class(normal.normalized().cast<float>()) != SurfaceClass::roof) continue;
+    ground.triangles.push_back(triangle);
   }
-  return positions;
+  if (ground.triangles.empty()) return samples;
+  geometry::append(samples.surface, ground);
+  const geometry::SurfaceSamples others = spread(ground, spacing, area);
+  for (const Vector3f& position : others.points) {
+    if (!box.contains(position.cast<double>())) continue;
+    samples.positions.push_back(position);
+    samples.classes.push_back(SurfaceClass::ground);
+    samples.areas.push_back(area);
+  }
+  return samples;
 }
 
-DensityMeter::DensityMeter(DensityPlaces positions, double radius, unsigned threads)
-    : positions_(std::move(positions)),
+DensityMeter::DensityMeter(DensitySamples samples, double radius, unsigned threads)
+    : samples_(std::move(samples)),
       radius_(radius),
       threads_(threads),
       grid_(radius),
-      areas_(positions_.positions.size(), 0.0),
-      counts_(positions_.positions.size(), 0) {
-  for (const Vector3f& position : positions_.positions) grid_.insert(position);
+      areas_(samples_.positions.size(), 0.0),
+      counts_(samples_.positions.size(), 0) {
+  for (const Vector3f& position : samples_.positions) grid_.insert(position);
   std::vector<geometry::Neighbour> near;
-  for (std::size_t i = 0; i < areas_.size(); ++i) {
+  for (const auto& indices : samples_.surface.triangles) {
+    const Triangle triangle = triangle_corners(samples_.surface, indices);
+    const Vector3d centre = (triangle[0] + triangle[1] + triangle[2]) / 3.0;
+    double size = 0.0;
+    for (const Vector3d& corner : triangle) size = std::max(size, (corner - centre).norm());
     near.clear();
-    grid_.find_within(positions_.positions[i], radius_, near);
-    std::ranges::sort(
-        near, {}, &geometry::Neighbour::index);  // The same order of summation on all platforms.
-    for (const geometry::Neighbour& other : near) areas_[i] += positions_.areas[other.index];
+    grid_.find_within(centre.cast<float>(), 1.00001 * (size + radius_), near);
+    for (const geometry::Neighbour& sample : near) {
+      areas_[sample.index] +=
+          area_within(triangle, samples_.positions[sample.index].cast<double>(), radius_);
+    }
   }
 }
 
@@ -232,8 +304,7 @@ std::optional<DensityFigures> DensityMeter::figures(double asked) const {
   const std::vector<double> all = densities();
   std::vector<std::pair<double, double>> chosen;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if (positions_.classes[i] != SurfaceClass::ground)
-      chosen.emplace_back(all[i], positions_.areas[i]);
+    if (samples_.classes[i] != SurfaceClass::ground) chosen.emplace_back(all[i], samples_.areas[i]);
   }
   if (chosen.empty()) return std::nullopt;
   return compute_figures(std::move(chosen), asked);
@@ -243,7 +314,7 @@ std::optional<DensityFigures> DensityMeter::figures(double asked, SurfaceClass o
   const std::vector<double> all = densities();
   std::vector<std::pair<double, double>> chosen;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if (positions_.classes[i] == of) chosen.emplace_back(all[i], positions_.areas[i]);
+    if (samples_.classes[i] == of) chosen.emplace_back(all[i], samples_.areas[i]);
   }
   if (chosen.empty()) return std::nullopt;
   return compute_figures(std::move(chosen), asked);

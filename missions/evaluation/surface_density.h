@@ -27,18 +27,19 @@ inline constexpr std::array surface_classes{SurfaceClass::roof, SurfaceClass::wa
 const char* to_string(SurfaceClass of);
 
 /// Sample positions on a surface. Each represents a part of its area.
-struct DensityPlaces {
+struct DensitySamples {
   std::vector<Eigen::Vector3f> positions;
   std::vector<double> areas;  ///< Area that each position represents [m^2].
   std::vector<SurfaceClass> classes;
+  geometry::Mesh surface;  ///< All sampled surface, with ground.
 };
 
 /// Samples a model and its surroundings with about one position per square of side `spacing` [m],
 /// at most one million each. Surroundings are sampled only within `margin` [m] of the model's
 /// bounding box, and only surface that faces up with a slope below 45 degrees. These samples have
 /// the class ground.
-DensityPlaces density_places(const geometry::Mesh& model, const geometry::Mesh& surroundings,
-                             double spacing, double margin);
+DensitySamples density_samples(const geometry::Mesh& model, const geometry::Mesh& surroundings,
+                               double spacing, double margin);
 
 /// Lower bounds of the histogram's bins [points per m^2]. The last bin has no upper bound.
 inline constexpr std::array density_bins{0.0,   1.0,   2.0,   5.0,    10.0,   20.0,   50.0,
@@ -59,16 +60,16 @@ class DensityMeter {
  public:
   /// `radius` is the distance from a position within which points and surface are counted [m].
   /// `threads` 0: all processors.
-  DensityMeter(DensityPlaces positions, double radius, unsigned threads = 0);
+  DensityMeter(DensitySamples samples, double radius, unsigned threads = 0);
 
   void add(std::span<const Eigen::Vector3f> points);
 
   /// Returns the density at each position: number of points within the radius divided by the area
-  /// of surface within it [1/m^2].
+  /// of surface within it [1/m^2]. The area is exact for the mesh.
   std::vector<double> densities() const;
   /// Returns the number of points within the radius of each position.
   std::vector<std::uint64_t> counts() const { return counts_; }
-  const DensityPlaces& positions() const { return positions_; }
+  const DensitySamples& samples() const { return samples_; }
 
   /// Returns the figures of all surface except ground, or nullopt if all surface is ground. `asked`
   /// is the required density [points per m^2].
@@ -77,7 +78,7 @@ class DensityMeter {
   std::optional<DensityFigures> figures(double asked, SurfaceClass of) const;
 
  private:
-  DensityPlaces positions_;
+  DensitySamples samples_;
   double radius_;
   unsigned threads_;
   geometry::PointGrid grid_;

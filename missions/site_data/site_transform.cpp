@@ -122,6 +122,7 @@ void SiteTransform::prepare_crs(const Source& source, const FileContents& conten
   request.vertical_if_silent = contents.vertical;
   request.needs_heights = needs_heights_;
   request.near = site.origin;
+  if (!needs_heights_) request.takeoff_height = 0.0;  // Heights are not used.
   if (site.origin && site.takeoff_z) {
     const flight::LocalFrame frame(*site.origin);
     request.takeoff_height = frame.to_geodetic({0.0, 0.0, *site.takeoff_z}).height;

@@ -74,7 +74,8 @@ std::vector<std::string> picked(const std::vector<Source>& files, const Pick& pi
   source.select.attributes = pick.attributes;
   std::vector<std::string> ids;
   for (const Object& object :
-       site_data::read_prior(source, {.origin = site_data::compute_centre(source)},
+       site_data::read_prior(source,
+                             {.origin = site_data::compute_centre(source), .takeoff_z = 0.0},
                              [](const Vector2d&) {
                                return std::optional(0.0);  // the terrain is not required here
                              })

@@ -56,8 +56,8 @@ class Density {
   Density(const EvaluateOptions& options, const Truth& truth)
       : options_(options),
         truth_(truth),
-        meter_(evaluation::density_places(truth.model, truth.surroundings,
-                                          options.density_cell / places_per_cell, margin),
+        meter_(evaluation::density_samples(truth.model, truth.surroundings,
+                                           options.density_cell / samples_per_cell, margin),
                options.density_cell, options.threads),
         raster_(make_plan(truth.model), options.density_cell) {}
 
@@ -88,7 +88,7 @@ class Density {
   }
 
  private:
-  static constexpr double places_per_cell = 4.0, margin = 5.0;
+  static constexpr double samples_per_cell = 4.0, margin = 5.0;
 
   static Eigen::AlignedBox2d make_plan(const geometry::Mesh& model) {
     const Eigen::AlignedBox3d box = geometry::bounding_box(model);

@@ -233,7 +233,7 @@ TEST(PhotoRuns, OfAFileAreThoseOfTheMission) {
   const auto problems = [&] { return interpret(file, make_flight_facts(plan)).problems; };
   EXPECT_THAT(problems(), IsEmpty());
   trigger->params[0] = 2.0;
-  EXPECT_THAT(problems(), Contains(HasSubstr("away from all views")));
+  EXPECT_THAT(problems(), Contains(HasSubstr("at a position that is not a view of the mission")));
   trigger->params[0] = 0.01;
   EXPECT_THAT(problems(), Contains(HasSubstr("at least 0.1 m")));
   trigger->params[0] = 3.0;

@@ -88,9 +88,10 @@ double covered_by(const Planned& planned, const std::string& name) {
 }
 
 void expect_true_figures(const Planned& planned, const std::vector<std::string>& names) {
+  const json written = planned.summary().at("flight").at("written");
   for (const std::string& name : names) {
     bool is_listed = false;
-    for (const json& part : planned.summary().at("flight").at("written")) {
+    for (const json& part : written) {
       if (std::ranges::find(part.at("files"), json(name)) == part.at("files").end()) continue;
       is_listed = true;
       EXPECT_NEAR(part.at("coverage_visible").get<double>(), covered_by(planned, name), 0.005)

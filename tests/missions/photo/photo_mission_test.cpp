@@ -50,7 +50,8 @@ photo: {gsd: 0.0026, patterns: [dome]}
 prior: [{file: house.obj, role: target, uncertainty: 0.1}]
 limits: {stand_off: 3}
 site: {latitude_deg: 51.75, longitude_deg: -1.25, geoid_undulation: 47}
-flight: {vehicle: mavic_3e, free_space: assumed, position_error: 0.1, clearance: 2}
+flight: {vehicle: mavic_3e, free_space: assumed, position_error: 0.1, clearance: 2,
+         takeoff: [-75, 0, 0]}
 )";
 
 class PhotoMissionTest : public testing::Test {

@@ -150,7 +150,7 @@ TEST(Campaign, RejectsMoreRunsThanMaximum) {
   std::string missions = "m0.yaml";
   for (int i = 1; i < 12; ++i) missions += ", m" + std::to_string(i) + ".yaml";
   EXPECT_THAT(rejection_message("missions: [" + missions + "]\nseeds: 100000\n"),
-              HasSubstr("more than 1000000 runs"));
+              HasSubstr("exceeds the limit of 1000000"));
 }
 
 // A wrong value is known when a mission is read with it; the message says where it stands.

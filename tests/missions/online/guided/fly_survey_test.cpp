@@ -311,7 +311,8 @@ TEST_F(FlySurveyWithFixedCamera, TurnsTheVehicleAlone) {
   const double pitch = -20.0 * geometry::radians_per_degree;
   for (std::size_t i = 0; i < asked.size(); ++i) {
     EXPECT_NEAR(asked[i], pitch, 1e-4) << i;
-    EXPECT_NEAR(actual_view[i], pitch + 0.05, 0.01) << i;  // as the vehicle reports its own pitch
+    // As the vehicle reports its own pitch. It still decelerates with up to 0.2 m/s^2.
+    EXPECT_NEAR(actual_view[i], pitch + 0.05, 0.02) << i;
   }
 }
 

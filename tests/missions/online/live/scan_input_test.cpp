@@ -154,7 +154,7 @@ TEST(DepthImage, RejectsSizeDifferentFromIntrinsics) {
       error_message(320, 240, parse_intrinsics("145 145 80 60")),
       testing::AllOf(HasSubstr("size.png"),
                      HasSubstr("the intrinsics belong to an image of about 160 x 120 pixels"),
-                     HasSubstr("the image has 320 x 240; multiply fx fy cx cy by 1.99")));
+                     HasSubstr("the image has 320 x 240 pixels; multiply fx fy cx cy by 1.99")));
   EXPECT_THAT(error_message(160, 120, parse_intrinsics("517 517 318.6 255.3")),
               HasSubstr("multiply fx fy cx cy by 0.24"));
   EXPECT_THAT(error_message(160, 120, std::nullopt), HasSubstr("about 63 x 47 pixels"));
