@@ -64,7 +64,7 @@ std::vector<BadInput> bad_inputs() {
        std::string("\x7f"
                    "ELF\0\0",
                    6),
-       "MISSION: is not text"},
+       "MISSION: contains binary data; expected a mission file"},
       {"HugeFile", std::string((1 << 20) + 1, '#'), "MISSION: is larger than 1 MiB"},
       {"MissingModel", evaluated, "MISSION:1: key scene.model is missing; set a model"},
       {"MissingDistance", model,
