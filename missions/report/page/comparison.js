@@ -72,8 +72,7 @@ function curve_lines(one, axis, unit) {
     line(title_of(one.cell), points(0), 0, mean)];
 }
 
-/// For each axis: key, title, label, type, and the factor from its unit to that of the paper's
-/// figure.
+/// For each curve: axis in the data, title, axis label, scale, and data units per displayed unit.
 const curve_axes = [["views", "Coverage vs. views", "views", "linear"],
   ["distance_m", "Coverage vs. path length", "metres", "linear"],
   ["flown_s", "Coverage vs. flight time", "minutes from take-off", "linear", 60],
