@@ -74,7 +74,7 @@ def blocks(lines):
     for number, line in enumerate(lines):
         mark = MARK.match(line)
         if line.startswith("<!-- checked") and not mark:
-            raise SystemExit(f"line {number + 1}: {line} is no mark that docs_blocks.py knows")
+            raise SystemExit(f"line {number + 1}: unknown mark {line}")
         if mark:
             found.append(block_after(lines, number, mark))
     return found
