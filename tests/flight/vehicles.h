@@ -1,5 +1,5 @@
-/// Vehicles for the tests of flight/, one or two of each dialect. The ones that ship are data of
-/// missions/, which these tests do not know.
+/// Vehicles for the tests of flight/, one or two for each autopilot dialect. These tests do not use
+/// the shipped presets, which belong to missions/.
 #pragma once
 
 #include <span>

@@ -39,7 +39,7 @@ TEST(Mount, AlignsOpticalFrameWithREP103) {
   EXPECT_NEAR((world_from_optical.translation() - Vector3d(10, 20.5, 29.8)).norm(), 0.0, 1e-9);
   expect_direction(Vector3d::UnitZ(), Vector3d::UnitY());   // forward is north
   expect_direction(Vector3d::UnitX(), Vector3d::UnitX());   // right is east
-  expect_direction(Vector3d::UnitY(), -Vector3d::UnitZ());  // down is down
+  expect_direction(Vector3d::UnitY(), -Vector3d::UnitZ());  // down is -z
   const Isometry3d back = mount.world_from_body(world_from_optical);
   EXPECT_NEAR((back.translation() - body.position).norm(), 0.0, 1e-9);
   EXPECT_NEAR((back.linear() - body.turn.toRotationMatrix()).norm(), 0.0, rounding);

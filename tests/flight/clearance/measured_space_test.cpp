@@ -366,7 +366,7 @@ TEST(MeasuredSpace, RejectsDamagedFilesWithFileName) {
   }
 }
 
-/// Block sizes of the order of the Earth's size.
+/// Blocks as large as the Earth.
 TEST(MeasuredSpace, RejectsFilesWithBlocksOutOfRange) {
   std::stringstream file;
   space_with_region().write(file);

@@ -133,7 +133,7 @@ std::string las_bytes(int format, std::size_t points, std::size_t declared) {
   put(104, static_cast<std::uint8_t>(format));
   put(105, static_cast<std::uint16_t>(point_size));
   for (std::size_t axis = 0; axis < 3; ++axis) put(131 + 8 * axis, 0.5);
-  put(155, 1.0);  // offset of x
+  put(155, 1.0);  // x offset
   put(247, static_cast<std::uint64_t>(declared));
   for (std::size_t i = 0; i < points; ++i) {
     const std::size_t offset = 375 + i * point_size;

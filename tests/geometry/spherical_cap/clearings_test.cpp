@@ -223,7 +223,8 @@ TEST(Clearings, AreWholeSphereForManyEqualCaps) {
 TEST(Clearings, IntersectCapsThatReachThem) {
   const Clearings clearings{{{Vector3d::UnitX(), 0.1}, {Vector3d::UnitZ(), 0.1}}, 0.9};
   const auto cap_at = [](double angle) {
-    return Vector3d(std::cos(angle), std::sin(angle), 0.0);  // of radius 0.2, from the first part
+    // A cap of chord radius 0.2, at this angle from the first clearing.
+    return Vector3d(std::cos(angle), std::sin(angle), 0.0);
   };
   const double cosine = 1.0 - 0.5 * 0.2 * 0.2;
   const auto chord_angle = [](double chord) { return 2.0 * std::asin(0.5 * chord); };

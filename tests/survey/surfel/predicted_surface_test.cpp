@@ -69,7 +69,7 @@ TEST(PredictedSurface, MatchesFullPredictionWhenUpdated) {
 }
 
 // Patches refuted by no-return rays are open again as soon as such rays are found to pass through
-// surface. The reference knows from the beginning.
+// surface. The reference model has this information from the first scan.
 TEST(PredictedSurface, RestoresPatchesRefutedByFalseMisses) {
   Knowledge known;
   for (const Vector3d& viewpoint : {Vector3d(2, 0, 0), Vector3d(0, 2, 0)})
@@ -364,7 +364,7 @@ TEST(PredictionYield, ExceedsOneForNewTerritoryOnly) {
   surfel::PredictionYield yield;
   yield.learn(1.0, 5.0, 0.1);
   EXPECT_DOUBLE_EQ(yield.value(), 1.0);
-  yield.learn(1.0, -5.0, 0.1);  // surfels that shared their area: 1.1 - 0.4 of 1.6
+  yield.learn(1.0, -5.0, 0.1);  // new surfels shared existing area: 1.1 - 0.4 for 1.6
   EXPECT_DOUBLE_EQ(yield.value(), 0.7 / 1.6);
 }
 

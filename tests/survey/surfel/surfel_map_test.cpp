@@ -75,7 +75,7 @@ TEST(SurfelMap, AddsHazardsOfObservations) {
   EXPECT_GT(map.covered_area(), covered_after_one);
 }
 
-// For surface observed from one side, exactly the outline is open.
+// If surface is observed from one side, only its outline is open.
 TEST(SurfelMap, IsOpenOnlyAtOutlineOfObservedSurface) {
   surfel::SurfelMap map(spacing);
   map.add(image_from({2, 0, 0}), surfel::CoverageModel(0.005, {}), jump, std::nullopt);

@@ -140,7 +140,7 @@ TEST_F(FlySurvey, YieldsControlToPilotImmediately) {
   EXPECT_LT(autopilot_->time() - autopilot_->taken_off() - 30.0, 1.3);
 }
 
-/// Returns true if each position is within `distance` of a leg between the others.
+/// Returns true if each position is within `distance` of one of the others.
 bool are_near(const std::vector<Vector3d>& positions, const std::vector<Vector3d>& others,
               double distance) {
   return std::ranges::all_of(positions, [&](const Vector3d& position) {
