@@ -1,4 +1,4 @@
-/// Benchmark of the cost of each part against its input size. Prints the measured times and the
+/// Benchmark of the run time of each part against its input size. Prints the measured times and the
 /// fitted exponent (time = c size^exponent, least squares of the logarithms). All parts run on one
 /// thread. Times are medians of three runs of process CPU time, which depends little on the load of
 /// the machine.

@@ -18,7 +18,8 @@ namespace {
 using namespace skycap::flight;
 using Eigen::Vector3d;
 
-/// CPU time, because both planners run on one thread and the machine may be shared.
+/// Returns the CPU time of `work` [s], because both planners run on one thread and the machine may
+/// be shared.
 double seconds(auto&& work) {
   const std::clock_t start = std::clock();
   work();

@@ -9,7 +9,8 @@
 
 namespace skycap::flight {
 
-/// "generic" (PX4), "generic_ardupilot" (ArduCopter's defaults), "m350_rtk" and "m30t" (DJI).
+/// Returns "generic" (PX4), "generic_ardupilot" (ArduCopter's defaults), "m350_rtk" and "m30t"
+/// (DJI).
 std::span<const Vehicle> vehicle_profiles();
 const Vehicle& vehicle_profile(const std::string& name);
 

@@ -119,7 +119,7 @@ int run_district(const std::uint8_t* bytes, std::size_t size) {
   });
 }
 
-/// The plan that is written from the parsed plan must be read as equal.
+/// Reads a plan. The plan that is written from it must be read as equal.
 int run_district_plan(const std::uint8_t* bytes, std::size_t size) {
   namespace batch = missions::batch;
   return run_reader(batch::district_plan_name, [&] {
@@ -131,14 +131,14 @@ int run_district_plan(const std::uint8_t* bytes, std::size_t size) {
   });
 }
 
-/// A damaged trial counts as not run and is not an error.
+/// Reads a trial. A damaged trial counts as not run and is not an error.
 int run_trial(const std::uint8_t* bytes, std::size_t size) {
   const auto path = file_with("trial.json", bytes_to_string(bytes, size));
   missions::batch::finished_trial(path, "");
   return 0;
 }
 
-/// A journal must only change files within its folder.
+/// Reads a journal, which must only change files within its folder.
 int run_journal(const std::uint8_t* bytes, std::size_t size) {
   const auto outside = fresh_folder(), folder = outside / "folder";
   std::filesystem::create_directory(folder);

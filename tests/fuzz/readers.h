@@ -28,7 +28,7 @@ std::span<const Reader> record_readers();   ///< recordings, journals, results
 std::span<const Reader>
 mission_readers();  ///< missions, campaigns, districts, sensors, packages, trials, journals
 
-/// ROS 2 messages; only with Cyclone DDS.
+/// Returns the readers of ROS 2 messages. Only available with Cyclone DDS.
 std::span<const Reader> ros2_readers();
 
 /// Returns all readers.

@@ -33,7 +33,7 @@ int run_route(const char* name, const std::uint8_t* bytes, std::size_t size) {
   });
 }
 
-/// Also prepares a simulated scan along the route.
+/// Reads a route and prepares a simulated scan along it.
 int run_scan_route(const char* name, const std::uint8_t* bytes, std::size_t size) {
   return run_reader(name, [&] {
     const auto path = file_with(name, bytes_to_string(bytes, size));

@@ -48,8 +48,8 @@ inline std::string read_content(const std::filesystem::path& file) {
   return content.str();
 }
 
-/// Survey of a teapot that takes 0.1 s, with a coarse sensor and low densities. The noise is of the
-/// order of the resolution radius, so that there are frontiers.
+/// Returns a survey of a teapot that takes 0.1 s, with a coarse sensor and low densities. The noise
+/// is of the order of the resolution radius, so that there are frontiers.
 inline std::string quick_mission(const std::string& more = "") {
   return "scene: {model: 'builtin:teapot', longest_side: 1.0}\n"
          "sensor: {width: 160, height: 100, noise: {sigma: 0.03}}\n"

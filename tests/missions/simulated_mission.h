@@ -34,7 +34,8 @@ inline std::string flight_mission_around(const std::string& scene, const std::st
          "limits: {max_views: 14}\n";
 }
 
-/// A teapot of 20 m, surveyed in 1 s. Its spout and handle are not visible from the first view.
+/// Returns a mission with a teapot of 20 m, surveyed in 1 s. Its spout and handle are not visible
+/// from the first view.
 inline std::string flight_mission(const std::string& more = "") {
   return flight_mission_around("{model: 'builtin:teapot', longest_side: 20.0, ground: true}",
                                "-14, -11", "14, 11, 13") +

@@ -9,7 +9,7 @@
 
 namespace skycap::tests {
 
-/// `scan` is the first scan of the planner and leaves frontiers.
+/// Stops the planner while it plans a view. `scan` is its first scan and leaves frontiers.
 inline void expect_stop_while_planning(survey::Planner& planner, const geometry::Scan& scan) {
   std::stop_source stop;
   planner.stop_on(stop.get_token());

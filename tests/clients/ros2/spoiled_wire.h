@@ -14,7 +14,7 @@ class CorruptedWire {
   CorruptedWire& operator=(const CorruptedWire&) = delete;
   ~CorruptedWire();
 
-  /// Number of corrupted data submessages so far.
+  /// Returns the number of data submessages corrupted so far.
   static std::size_t count();
 };
 

@@ -58,7 +58,7 @@ double largest_that(double max, const std::function<bool(double)>& holds) {
   return low;
 }
 
-/// Numerical counterpart of the closed form in s_curve_time().
+/// Computes the closed form in s_curve_time() numerically.
 double integrated_s_curve(double distance, const LegLimits& limits, double jerk, double jerk_rise) {
   const auto fits = [&](const Covered& state) {
     return state.speed <= limits.speed && 2.0 * state.distance <= distance;
@@ -162,8 +162,8 @@ struct LoggedSortie {
   std::vector<Hop> hops;
 };
 
-/// Three sorties in the ArduCopter 4.8 simulator at 4 m/s with default parameters. Each starts 5 m
-/// above the pad, stops for 1 s at each waypoint, and lands from 5 m.
+/// Returns three sorties in the ArduCopter 4.8 simulator at 4 m/s with default parameters. Each
+/// starts 5 m above the pad, stops for 1 s at each waypoint, and lands from 5 m.
 const std::vector<LoggedSortie>& logged_sorties() {
   static const std::vector<LoggedSortie> sorties{
       {191.0,

@@ -22,7 +22,7 @@ using testing::ThrowsMessage;
 
 constexpr double period = 0.1;  ///< sampling period [s]
 
-/// Vehicle that flies in the log. It differs slightly from the preset.
+/// Returns the vehicle that flies in the log. It differs slightly from the preset.
 Vehicle reference_vehicle() {
   Vehicle vehicle = vehicle_profile("generic_ardupilot");
   vehicle.endurance_min = 22.0;
@@ -51,7 +51,7 @@ std::vector<Vector3d> velocities() {
   return all;
 }
 
-/// `noise` is the standard deviation of the measured power [W].
+/// Simulates a log. `noise` is the standard deviation of the measured power [W].
 FlightLog make_log(const Vehicle& vehicle, const Vector2d& wind, double noise) {
   const Motion motion(vehicle, {.wind = wind});
   std::mt19937_64 random(5);

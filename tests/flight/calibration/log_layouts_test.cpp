@@ -68,7 +68,7 @@ const std::vector<Layout>& layouts() {
   return all;
 }
 
-/// Vehicle that flies in the log and hovers at this power [W].
+/// Returns the vehicle that flies in the log and hovers at this power [W].
 Vehicle reference_vehicle(double hover_power) {
   Vehicle vehicle = vehicle_profile("generic_ardupilot");
   vehicle.avionics_power = 0.1 * hover_power;
@@ -77,7 +77,8 @@ Vehicle reference_vehicle(double hover_power) {
   return vehicle;
 }
 
-/// Hover, then two rounds of level legs in four directions at two speeds, then a climb.
+/// Returns the velocity of the test flight: hover, two rounds of level legs in four directions at
+/// two speeds, and a climb.
 Vector3d velocity_at(double time) {
   if (time < 60.0) return Vector3d::Zero();
   if (time > 320.0) return {0, 0, 2.0};

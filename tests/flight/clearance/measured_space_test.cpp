@@ -29,7 +29,7 @@ using testing::HasSubstr;
 
 const Camera small_camera({.width = 96, .height = 64, .horizontal_fov = 1.5, .vertical_fov = 1.1});
 
-/// Room of 20 x 20 x 10 m with a column, observed from inside.
+/// Returns a room of 20 x 20 x 10 m with a column, observed from inside.
 geometry::Mesh room() {
   geometry::Mesh mesh = scenes::box({-10, -10, 0}, {10, 10, 10});
   geometry::append(mesh, scenes::box({2, 2, 0}, {4, 4, 10}));
@@ -43,7 +43,8 @@ KnownSpace make_truth(const geometry::Mesh& mesh) {
   return KnownSpace(obstacles);
 }
 
-/// Safety property: space that is classified as free keeps the clearance from the ground truth.
+/// Checks the safety property: space that is classified as free keeps the clearance from the ground
+/// truth.
 void expect_truly_free(const FreeSpace& measured, const FreeSpace& truth, const AlignedBox3d& where,
                        double clearance, int min) {
   std::mt19937_64 random(11);

@@ -15,8 +15,9 @@ using Eigen::Vector3d;
 
 const Eigen::AlignedBox3d around(Vector3d::Constant(-5), Vector3d::Constant(5));
 
-/// Brute-force reference: the distance of a point from a convex set is convex. Along a segment it
-/// has one minimum, which a ternary search finds to the square root of machine precision.
+/// Computes the minimum distance along a segment by ternary search. The distance of a point from a
+/// convex set is convex, so it has one minimum along a segment. The accuracy is the square root of
+/// machine precision.
 double valley(const Segment& segment, const std::function<double(const Vector3d&)>& distance) {
   double low = 0.0, high = 1.0;
   for (int i = 0; i < 100; ++i) {
@@ -27,7 +28,8 @@ double valley(const Segment& segment, const std::function<double(const Vector3d&
   return distance(segment.at(0.5 * (low + high)));
 }
 
-/// Distance of a point from a triangle, by ternary search over the rows parallel to one side.
+/// Computes the distance of a point from a triangle, by ternary search over the rows parallel to
+/// one side.
 double to_triangle(const Vector3d& point, const Triangle& triangle) {
   const Vector3d &a = triangle[0], &b = triangle[1], &c = triangle[2];
   const auto row = [&](const Vector3d& on_ab) {

@@ -97,7 +97,8 @@ TEST(MeasuredUnion, IsOccupiedWhereAnySurveyMeasuredAPoint) {
   EXPECT_EQ(together.name(closest), "a measured point");
 }
 
-/// A wall in the east, observed from the west beyond that survey's own box.
+/// Returns the space of a survey in the west that also observed a wall in the east, beyond its own
+/// box.
 MeasuredSpace seen_from_the_west(const std::vector<AlignedBox3d>& extra_boxes) {
   MeasuredSpace space({.voxel = voxel, .region = west, .extra_boxes = extra_boxes});
   const geometry::Camera camera(

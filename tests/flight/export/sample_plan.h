@@ -8,18 +8,21 @@
 
 namespace skycap::flight {
 
-/// Building of 20 x 20 x 15 m on flat ground, inside a fence. The flight passes next to a heliport
-/// and above a low shed zone.
+/// Returns a building of 20 x 20 x 15 m on flat ground, inside a fence. The flight passes next to a
+/// heliport and above a low shed zone.
 Obstacles sample_site();
 
-/// Four capture points around the building, near Oxford, planned for this vehicle at 2 m clearance.
+/// Returns a plan for four capture points around the building, near Oxford, for this vehicle at 2 m
+/// clearance.
 FlightPlan sample_plan(const Vehicle& vehicle);
 
-/// Six photos of the south side of the building, one every 3 m in a row at a height of 8 m. The
-/// camera's motion blur limits the speed to 2.5 m/s. The vehicle stops at each photo.
+/// Returns a plan for six photos of the south side of the building, one every 3 m in a row at a
+/// height of 8 m. The camera's motion blur limits the speed to 2.5 m/s. The vehicle stops at each
+/// photo.
 FlightPlan photo_row_plan(const Vehicle& vehicle);
 
-/// From one side of the building to the other and back, with corners, in this flight style.
+/// Returns a plan from one side of the building to the other and back, with corners, in this flight
+/// style.
 FlightPlan corner_plan(FlightStyle style);
 
 }  // namespace skycap::flight

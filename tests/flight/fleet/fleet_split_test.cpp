@@ -22,7 +22,7 @@ using Eigen::Vector3d;
 
 using Order = std::vector<std::uint32_t>;
 
-/// Flat world in which times and energies equal distances [m].
+/// Returns a problem in a flat world in which times and energies equal distances [m].
 FleetProblem flat_problem(std::uint64_t seed, std::size_t capture_points,
                           const std::vector<Vector3d>& pads) {
   std::mt19937_64 random(seed);
@@ -65,8 +65,8 @@ double best_cut(const FleetProblem& problem, std::span<const std::uint32_t> orde
   return best;
 }
 
-/// Minimum time of one tour through each set of capture points, without battery limits (Held & Karp
-/// 1962). The index is the bit set.
+/// Returns the minimum time of one tour through each set of capture points, without battery limits
+/// (Held & Karp 1962). The index is the bit set.
 std::vector<double> best_tours(const FleetVehicle& vehicle) {
   const std::size_t count = vehicle.count(), sets = std::size_t{1} << count;
   std::vector<double> leg_costs(sets * count, never), tours(sets, never);
@@ -88,7 +88,7 @@ std::vector<double> best_tours(const FleetVehicle& vehicle) {
   return tours;
 }
 
-/// Minimum over all assignments of capture points to vehicles.
+/// Returns the minimum over all assignments of capture points to vehicles.
 double optimum(const FleetProblem& problem, FleetGoal goal) {
   const std::size_t sets = std::size_t{1} << problem.count();
   std::vector<double> best(sets, never);  // for each set, with the vehicles so far

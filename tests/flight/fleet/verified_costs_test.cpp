@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 
 using Order = std::vector<std::uint32_t>;
 
-/// Four buildings with streets between them.
+/// Returns four buildings with streets between them.
 Obstacles block() {
   Obstacles obstacles;
   for (const double x : {-40.0, 10.0}) {

@@ -21,8 +21,8 @@ Problems find_problems(const MavlinkMission& file, AutopilotType autopilot);
 /// Returns the index of the n-th item with this command.
 std::size_t find_index(const MavlinkMission& file, int command, std::size_t n = 0);
 
-/// Return the index of the waypoint of the n-th capture point, and of the item that holds before
-/// its captures.
+/// Returns the index of the waypoint of the n-th capture point. find_hold() returns that of the
+/// item that holds before its captures.
 std::size_t find_waypoint(const MavlinkMission& file, std::size_t n = 0);
 std::size_t find_hold(const MavlinkMission& file, std::size_t n = 0);
 

@@ -16,7 +16,7 @@ namespace {
 using Eigen::Vector3d;
 using testing::HasSubstr;
 
-/// Brute-force reference: integrates the fastest jerk-limited motion from rest on a time grid. It
+/// Integrates the fastest jerk-limited motion from rest on a time grid, by brute force. It
 /// accelerates with bang-bang jerk and brakes symmetrically. Only the distance is compared.
 double distance_covered(double time, double speed, double acceleration, double jerk) {
   // First half: raise, hold and lower the acceleration so that it ends at zero with speed v.

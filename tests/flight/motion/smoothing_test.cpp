@@ -26,7 +26,7 @@ double stopping_time(const std::vector<Vector3d>& points, const Motion& motion) 
   return sum;
 }
 
-/// Free space with one ball of radius 0.1 m at each position.
+/// Returns free space with one ball of radius 0.1 m at each position.
 KnownSpace air_with(const std::vector<Vector3d>& balls) {
   Obstacles obstacles;
   obstacles.cloud.radius = 0.1;

@@ -13,8 +13,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Two planners with independent search methods. Both paths are verified. Their lengths agree to 5%,
-// the accuracy of sampling with this effort.
+// Compares two planners with independent search methods. Both paths are verified. Their lengths
+// agree to 5%, the accuracy of sampling with this effort.
 void expect_agreement(const Obstacles& obstacles, const Vector3d& from, const Vector3d& to,
                       double clearance, const SamplingOptions& options) {
   const KnownSpace space(obstacles);

@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 using geometry::look_at;
 using testing::HasSubstr;
 
-/// Building of 20 x 20 x 15 m on flat ground.
+/// Returns a building of 20 x 20 x 15 m on flat ground.
 Obstacles site() {
   Obstacles obstacles;
   obstacles.mesh = scenes::box({-10, -10, 0}, {10, 10, 15});
@@ -145,8 +145,8 @@ TEST(Route, FindsNarrowPassagesBySampling) {
               testing::IsEmpty());
 }
 
-/// Capture points in front of the wall and behind it, with the survey's approach path through the
-/// window.
+/// Returns capture points in front of the wall and behind it, with the survey's approach path
+/// through the window.
 std::vector<CapturePoint> window_stations() {
   const Vector3d home(-8, -6, 20), before(-8, -7, 22), in_window(0, 0, 20), behind(-8, 7, 20);
   std::vector<CapturePoint> capture_points{{look_at(before, {-8, -20, 22})},

@@ -99,7 +99,7 @@ double best_sortie(const SplitProblem& problem, std::size_t first, std::size_t l
   return best;
 }
 
-/// Exhaustive reference for the split: all subsets of the gaps between capture points.
+/// Tries all subsets of the gaps between capture points, as an exhaustive reference for the split.
 double best_by_trying_all(const SplitProblem& problem) {
   const std::size_t count = problem.capture_point.size();
   if (count == 0) return 0.0;

@@ -22,7 +22,7 @@ using testing::HasSubstr;
 
 constexpr double clearance = 2.0;
 
-/// A tower of 10 x 10 m between the position at y = 0 and the pad 60 m west of it.
+/// Returns a tower of 10 x 10 m between the position at y = 0 and the pad 60 m west of it.
 Obstacles tower(double height) {
   Obstacles obstacles;
   obstacles.mesh = scenes::box({-35, -5, 0}, {-25, 5, height});

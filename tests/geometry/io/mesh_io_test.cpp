@@ -25,7 +25,7 @@ using Eigen::Vector3d;
 using testing::HasSubstr;
 using testing_support::TemporaryFolder;
 
-/// Closed surface with shared vertices: a pyramid on the unit square.
+/// Returns a closed surface with shared vertices: a pyramid on the unit square.
 Mesh pyramid() {
   return {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, 0.75}},
           {{0, 2, 1}, {0, 3, 2}, {0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}}};

@@ -18,8 +18,8 @@ std::vector<Vector2d> reversed(std::vector<Vector2d> polygon) {
   return polygon;
 }
 
-/// The polygon `notched` by inequalities: the square without the open triangle above the tip of the
-/// notch.
+/// Tests for the polygon `notched` by inequalities: the square without the open triangle above the
+/// tip of the notch.
 bool is_in_notched(const Vector2d& p) {
   const bool is_in_square = p.x() >= 0 && p.x() <= 8 && p.y() >= 0 && p.y() <= 8;
   return is_in_square && p.y() - 2 <= 1.5 * std::abs(p.x() - 4);

@@ -16,7 +16,7 @@ namespace {
 using Eigen::Vector3d;
 using testing::HasSubstr;
 
-/// Two triangles in the plane z = 0 with areas 0.5 and 1.5 and no shared vertices.
+/// Returns two triangles in the plane z = 0 with areas 0.5 and 1.5 and no shared vertices.
 Mesh two_triangles() {
   return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, 0, 0}, {8, 0, 0}, {5, 1, 0}},
           {{0, 1, 2}, {3, 4, 5}}};

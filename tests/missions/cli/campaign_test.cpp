@@ -34,7 +34,7 @@ using tests::run_skycap;
 using Json = nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
-/// Survey with few views in a scene that loads quickly.
+/// Returns a mission with few views in a scene that loads quickly.
 std::string small_mission(const std::string& more = "") {
   std::string mission = tests::quick_mission(more);
   return mission.replace(mission.find("longest_side"), 0, "detail: coarse, ");

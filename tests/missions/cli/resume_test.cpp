@@ -56,7 +56,7 @@ class ResumedPlan : public testing::Test {
   fs::path journal_ = folder_.path() / "part" / "survey.journal";
 };
 
-/// Mission with scans en route.
+/// Returns a mission with scans en route.
 std::string moving_mission() {
   std::string text = flight_mission();
   const std::string sensor = "sensor: {";

@@ -30,7 +30,7 @@ namespace {
 
 using flight::Problems;
 
-/// Number of corruptions of each file.
+/// Returns the number of corruptions of each file.
 int corruptions() { return std::getenv("SKYCAP_PACKAGES") == nullptr ? 60 : 200; }
 
 /// Returns the packages from the environment, or a new one in the folder.

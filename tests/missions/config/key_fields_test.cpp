@@ -70,8 +70,8 @@ std::string value_text(const config::Key& key, const Document& document) {
 const std::map<std::string, std::string> means_nothing_without = {
     {"sensor.frame_period", "sensor.capture"}};
 
-/// Setting a key changes its own text to the value and no other key. `document` contains room for
-/// the keys: keys of sources need a prior source.
+/// Checks that setting a key changes its own text to the value and no other key. `document` must
+/// contain a prior source for the keys of sources.
 void expect_own_fields(std::span<const config::Key> keys, Document document) {
   for (const config::Key& key : keys) key.set(document, value_for(key, true));
   for (const config::Key& key : keys) {

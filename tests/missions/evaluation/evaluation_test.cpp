@@ -28,7 +28,7 @@ geometry::Mesh cube(double half) {
   return mesh;
 }
 
-/// A cube with edges of 2 m and a smaller one inside, which is not visible from outside.
+/// Returns a cube with edges of 2 m and a smaller one inside, which is not visible from outside.
 geometry::Mesh cube_in_a_cube() {
   geometry::Mesh mesh = cube(1.0);
   geometry::append(mesh, cube(0.3));

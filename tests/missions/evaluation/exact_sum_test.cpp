@@ -11,7 +11,7 @@
 namespace skycap::missions {
 namespace {
 
-/// Random numbers with magnitudes from 2^-60 to 2^60.
+/// Returns random numbers with magnitudes from 2^-60 to 2^60.
 std::vector<double> numbers(std::size_t count) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> mantissa(1.0, 2.0);

@@ -98,7 +98,7 @@ TEST(ReachableSpace, RespectsHeightLimits) {
   EXPECT_TRUE(leads_inside(bell, {.radius = 1.0, .min_height = 10.5}, {0, 0, 40}));
 }
 
-/// Random blocks in a room with a door create passages of all widths.
+/// Returns a room with a door and random blocks, which create passages of all widths.
 geometry::Mesh cluttered_room(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   const auto draw = [&](double low, double high) {

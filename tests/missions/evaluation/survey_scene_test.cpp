@@ -130,7 +130,7 @@ TEST(SurveyScene, CachesReachableSpaceInFile) {
   EXPECT_GT(std::filesystem::file_size(kept), 100U);
 }
 
-/// A surveyed cube of 4 m and a neighbouring cube 6 m away as an obstacle.
+/// Returns a mission with a surveyed cube of 4 m and a neighbouring cube 6 m away as an obstacle.
 std::string two_cubes(const TestFolder& folder, const char* neighbours) {
   geometry::Mesh cube = sim::models::box({-2, -2, 0}, {2, 2, 4});
   geometry::write_mesh(folder / "cube.obj", cube);

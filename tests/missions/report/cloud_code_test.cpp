@@ -139,9 +139,9 @@ TEST(CloudCode, DownsamplesEvenly) {
   EXPECT_NEAR(static_cast<double>(kept), static_cast<double>(all) / 10.0, 12.0);
 }
 
-/// Each point belongs to the nearest of 40 views around the sphere or, with equal probability, to
-/// another view nearby. A view has a typical incidence angle, from which a third of its points
-/// differ by one step.
+/// Returns view and incidence values like those of a survey. Each point belongs to the nearest of
+/// 40 views around the sphere or, with equal probability, to another view nearby. A view has a
+/// typical incidence angle, from which a third of its points differ by one step.
 std::vector<std::vector<std::uint16_t>> survey_attributes(const std::vector<Vector3f>& points) {
   std::mt19937_64 random(4);
   std::vector<std::vector<std::uint16_t>> values(3);

@@ -64,7 +64,7 @@ TEST(OrbitTrajectory, FliesSingleCircleAtMinHeight) {
 
 class ScanRouteFile : public testing::Test {
  protected:
-  // A camera on a platform at a view has the view's direction.
+  // Checks that a camera on a platform at a view has the view's direction.
   static void expect_view(const sim::Trajectory& platform, double time, const View& view) {
     const View seen = geometry::to_view(platform.pose(time) * scan::body_from_camera());
     EXPECT_TRUE(seen.position.isApprox(view.position, 1e-5)) << seen.position.transpose();

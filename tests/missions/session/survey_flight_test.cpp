@@ -383,7 +383,7 @@ TEST(FlightPackage, ReportsMissingDataOfFormats) {
 
   const auto alone = run_skycap({"export", folder / "out", "--format", "plan", "--set",
                                  "site.latitude_deg=1", "--set", "site.longitude_deg=2"});
-  EXPECT_EQ(alone.exit_code, 0) << alone.err;  // AMSL by EGM96
+  EXPECT_EQ(alone.exit_code, 0) << alone.err;  // AMSL, from EGM96
 }
 
 // The space above the pad is assumed free, but the tip of the spout is there.

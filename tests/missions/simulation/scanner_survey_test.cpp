@@ -14,7 +14,7 @@
 namespace skycap::missions {
 namespace {
 
-/// A teapot of 20 m on the ground, with a box around it.
+/// Returns a mission with a teapot of 20 m on the ground and a box around it.
 config::MissionSetup mission_by(const std::string& lidar) {
   return config::parse_mission(
       "scene: {model: 'builtin:teapot', longest_side: 20.0, ground: true}\n"

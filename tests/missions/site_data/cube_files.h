@@ -35,21 +35,23 @@ std::string make_citygml(const Cube& cube, const std::string& crs = "EPSG:25832"
 std::string make_cityjson(const Cube& cube, const std::string& crs = "EPSG:25832");
 std::string make_geojson(const Cube& cube);  ///< outline only
 std::string make_obj(const Cube& cube);
-/// With y up and its low corner at the origin, because single precision is insufficient for map
-/// coordinates.
+/// Returns a GLB file with y up and its low corner at the origin, because single precision is
+/// insufficient for map coordinates.
 std::string make_glb(const Cube& cube);
-/// Cells of 0.5 m: the top of the cube, and 20 m lower elsewhere.
+/// Returns cells of 0.5 m: the top of the cube, and 20 m lower elsewhere.
 std::string make_ascii_grid(const Cube& cube);
-/// Corners as a LAS file with a scale of 1 mm. Versions before 1.4 have formats below 6.
+/// Returns the corners as a LAS file with a scale of 1 mm. Versions before 1.4 have formats below
+/// 6.
 std::string make_las(const Cube& cube, int minor, int format, const std::string& wkt = "");
 
-/// Corners as an E57 file: two scans of scaled integers whose poses move them to map coordinates.
+/// Returns the corners as an E57 file: two scans of scaled integers whose poses move them to map
+/// coordinates.
 std::string make_e57(const Cube& cube, const std::string& reference_system = "");
 
-/// Source for a file with ellipsoidal heights in EPSG:25832.
+/// Returns a source for a file with ellipsoidal heights in EPSG:25832.
 missions::site_data::Source make_source(const std::filesystem::path& file);
 
-/// Site with its origin 60 m from the cube.
+/// Returns a site with its origin 60 m from the cube.
 missions::site_data::SiteFrame site_at_cube();
 
 }  // namespace skycap::testing_support

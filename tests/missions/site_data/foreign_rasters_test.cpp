@@ -28,7 +28,7 @@ class ForeignRaster : public testing::Test {
     // 500005 5315995 in EPSG:25832.
     return read_prior(source, {.origin = flight::GeodeticPoint{47.997254, 9.000067, 500.0}});
   }
-  /// Row 2 has no heights; all others are 500 or 512 m.
+  /// Checks that row 2 has no heights and that all others are 500 or 512 m.
   static void expect_hole(const Prior& prior) {
     std::size_t without = 0;
     for (std::size_t i = 0; i < prior.grid.nodes.size(); ++i) {

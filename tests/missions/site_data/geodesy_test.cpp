@@ -22,7 +22,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-/// Longitude, latitude, height.
+/// Returns longitude, latitude and height.
 Vector3d geodetic(const ReferenceRequest& request, Vector3d position) {
   geodetic_transform(request).apply({&position, 1});
   return position;

@@ -20,8 +20,8 @@ using testing_support::Cube;
 using testing_support::make_source;
 using testing_support::site_at_cube;
 
-/// Independent conversion of geodetic coordinates to the site's east, north and up axes on the
-/// ellipsoid (Torge & Mueller, Geodesy, 4.1).
+/// Converts geodetic to geocentric coordinates, independently of the product (Torge & Mueller,
+/// Geodesy, 4.1). From these follow the site's east, north and up axes.
 Vector3d geocentric(double latitude_deg, double longitude_deg, double height) {
   constexpr double a = 6378137.0, f = 1.0 / 298.257223563, e2 = f * (2.0 - f);
   const double phi = latitude_deg * M_PI / 180.0, lambda = longitude_deg * M_PI / 180.0;
@@ -65,7 +65,7 @@ class BoxFixture : public testing::Test {
     return read_prior(source, site_at_cube());
   }
 
-  /// Both corners are vertices, and the box contains all eight.
+  /// Checks that both corners are vertices and that the box contains all eight.
   static void expect_cube(const Prior& prior, double tolerance) {
     ASSERT_EQ(prior.objects.size(), 1U);
     double low = 1e9, high = 1e9;

@@ -60,13 +60,13 @@ class RandomSite {
   double between(double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random_);
   }
-  /// Random length in whole millimetres, as in files.
+  /// Returns a random length in whole millimetres, as in files.
   double length(double low, double high) { return std::round(1e3 * between(low, high)) / 1e3; }
   Vector3d pose(const AlignedBox3d& box) {
     return (flight::scenes::point_in(random_, box) * 1e3).array().round() / 1e3;
   }
 
-  /// Random error with the magnitude of the source's uncertainty.
+  /// Returns a random error with the magnitude of the source's uncertainty.
   Vector3d error(double uncertainty) {
     return uncertainty *
            flight::scenes::point_in(random_, {Vector3d(-1, -1, -1), Vector3d(1, 1, 1)})
@@ -94,7 +94,8 @@ class RandomSite {
     }
   }
 
-  /// Points of a surface. The file contains one point for each cube, which represents the others.
+  /// Writes points of a surface. The file contains one point for each cube, which represents the
+  /// others.
   void write_scan() {
     Cube corners{.low = pose({Vector3d(-30, -30, 5), Vector3d(20, 20, 25)}),
                  .size = {length(0.05, 1), length(0.05, 1), length(0.05, 1)}};
@@ -105,7 +106,7 @@ class RandomSite {
       truth_.emplace_back(corners.corner(i) + off, corners.corner(i) + off);
   }
 
-  /// Cells of 2 m. The columns below them extend downwards without limit.
+  /// Writes cells of 2 m. The columns below them extend downwards without limit.
   void write_height_model() {
     const Vector3d corner = pose({Vector3d(-30, -30, 0), Vector3d(0, 0, 0)});
     std::string text = "ncols 6\nnrows 5\nxllcorner " + std::to_string(corner.x()) +

@@ -141,7 +141,7 @@ TEST(Terrain, KeepsPeaksOfLargeGrid) {
   }
 }
 
-/// A flat obstacle of 1 m columns at integer positions where `is_there` returns true.
+/// Returns a flat obstacle of 1 m columns at integer positions where `is_there` returns true.
 template <typename IsThere>
 flight::PriorObstacleConfig ground_where(const IsThere& is_there, double z) {
   flight::PriorObstacleConfig ground{.name = "ground", .uncertainty = 0.4, .is_ground = true};

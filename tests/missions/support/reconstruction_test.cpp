@@ -23,7 +23,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-/// Points of a sphere of 2 m, about 0.07 m apart, without points below `min_z`.
+/// Returns points of a sphere of 2 m, about 0.07 m apart, without points below `min_z`.
 geometry::AttributedCloud ball_cloud(float min_z = -10.0F) {
   const geometry::SurfaceSamples samples =
       geometry::sample_surface(sim::sphere({1, 2, 3}, 2.0, 5), 8000, 4);

@@ -188,8 +188,8 @@ TEST(RadcliffeCamera, HasClosedPartsThatFaceOutward) {
   }
 }
 
-/// Returns true in the full-size interior that is solid throughout. No ray from outside may reach
-/// it.
+/// Returns true if the full-size point is inside the solid interior, which no ray from outside may
+/// reach.
 bool is_inside(const Vector3d& point) {
   const double r = point.head<2>().norm() * full_size, z = point.z() * full_size;
   if (z < 0.05) return false;
@@ -199,9 +199,10 @@ bool is_inside(const Vector3d& point) {
   return r < 1.0 && z < table.cap_foot();
 }
 
-/// At 50 m, single precision has a resolution of 4 micrometres. A ray that touches a sharp edge may
-/// miss its front and hit its back, and so may its two neighbours along the edge. A surface with a
-/// visible back is visible from the back on one side of the ray as well.
+/// Returns true if the surface is visible from the back. At 50 m, single precision has a resolution
+/// of 4 micrometres. A ray that touches a sharp edge may miss its front and hit its back, and so
+/// may its two neighbours along the edge. A back that is really visible is visible on one side of
+/// the ray as well.
 bool is_seen_from_behind(const Scene& model, const Vector3d& origin, const Vector3d& direction) {
   const Vector3d right = geometry::any_orthogonal(direction), up = direction.cross(right);
   int backs = 0;

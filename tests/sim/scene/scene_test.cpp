@@ -105,7 +105,7 @@ TEST(Scene, PassesOnlyRaysInsideHole) {
   }
 }
 
-// Each ray must hit something within `reach` times the distance to its target, alone and in
+// Checks that each ray hits something within `reach` times the distance to its target, alone and in
 // packets.
 void expect_no_leaks(const Scene& scene, const Vector3d& origin,
                      const std::vector<Vector3d>& targets) {

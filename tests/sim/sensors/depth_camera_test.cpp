@@ -24,7 +24,8 @@ using testing::HasSubstr;
 
 constexpr double degree = std::numbers::pi / 180.0;
 
-// Neither 101 nor 67 is a multiple of the size of a packet, tile or block.
+// Returns a camera without noise. Neither 101 nor 67 is a multiple of the size of a packet, tile or
+// block.
 DepthCameraConfig exact_config(int width = 101, int height = 67) {
   return {.camera = {.width = width,
                      .height = height,

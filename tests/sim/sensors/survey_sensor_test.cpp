@@ -112,7 +112,8 @@ TEST(SurveySensor, DependsOnSeedAndFrameButNotOnThreadCount) {
   EXPECT_EQ(scan.points.size(), sensor.scan(scene, view, 4, 1).points.size());
 }
 
-/// Rotation axis along the flight direction, or to the left across it.
+/// Returns a level mount with the rotation axis along the flight direction, or to the left across
+/// it.
 geometry::ScannerMount level_mount(double azimuth) {
   return scanner_mount(scanner(),
                        Eigen::Isometry3d(Eigen::AngleAxisd(azimuth, Vector3d::UnitZ()) *

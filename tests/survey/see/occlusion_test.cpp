@@ -19,7 +19,7 @@ geometry::PointGrid make_grid(const std::vector<Vector3f>& points, double radius
   return grid;
 }
 
-/// Points at z = `height`, 5 cm apart, on a square of 4 m.
+/// Returns points at z = `height`, 5 cm apart, on a square of 4 m.
 std::vector<Vector3f> wall(float height) {
   std::vector<Vector3f> points;
   for (float x = -2; x <= 2; x += 0.05F) {

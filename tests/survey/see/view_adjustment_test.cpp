@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 
 const see::ViewPlacement two_metres{.distance = 2.0};
 
-/// Frontier on the plane z = 0 with the surface at x < 0, first observed from (3, 0, 3).
+/// Returns a frontier on the plane z = 0 with the surface at x < 0, first observed from (3, 0, 3).
 see::Frontier edge_frontier() {
   see::Frontier frontier{.position = Vector3d::Zero(),
                          .observed_from = {3, 0, 3},

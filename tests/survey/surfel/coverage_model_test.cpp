@@ -43,8 +43,8 @@ double simulated_uncovered_share(double ray_density, double incidence, const sur
   return static_cast<double>(uncovered) / trials;
 }
 
-/// Four standard deviations of the simulated fraction, plus 0.02 for the interpolation of the
-/// table.
+/// Returns four standard deviations of the simulated fraction, plus 0.02 for the interpolation of
+/// the table.
 double tolerance(double share, int trials) {
   return 4.0 * std::sqrt(share * (1.0 - share) / trials) + 0.02;
 }
@@ -113,7 +113,8 @@ double displaced_uncovered_share(double ray_density, const surfel::Noise& noise,
   return static_cast<double>(uncovered) / observations;
 }
 
-// All points of an observation miss together: many rays do not reduce the effect of a pose error.
+// A pose error displaces all points of an observation together, so many rays do not reduce its
+// effect.
 TEST(CoverageModel, MatchesSimulationForPoseErrors) {
   constexpr int observations = 4000;
   for (const double deviation : {0.5, 1.0, 3.0}) {

@@ -145,7 +145,7 @@ TEST(PredictedSurface, LearnsSeparateHitRateForCutOffSurface) {
   EXPECT_EQ(predicted.hit_rate(surfel::Continuation::straight, 0), straight);
 }
 
-/// A plate of 40 x 40 cm, 5 mm thick, with its front at x = 0.
+/// Scans a plate of 40 x 40 cm, 5 mm thick, with its front at x = 0.
 geometry::Scan scan_plate(const geometry::View& view) {
   geometry::Scan scan;
   scan.world_from_sensor = geometry::camera_pose(view);

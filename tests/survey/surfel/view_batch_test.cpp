@@ -19,7 +19,7 @@ struct Problem {
   std::vector<float> weights;
 };
 
-/// Random views in a box, each of which observes some of 30 targets.
+/// Returns random views in a box, each of which observes some of 30 targets.
 Problem random_problem(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> coordinate(-5.0, 5.0);

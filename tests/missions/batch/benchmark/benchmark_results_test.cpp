@@ -19,7 +19,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// A survey of three views at 0, 1 and 3 m, after 1, 2 and 4 s.
+/// Returns a survey of three views at 0, 1 and 3 m, after 1, 2 and 4 s.
 batch::Trial trial(double a, double b, double c) {
   batch::Trial trial;
   trial.views = 3;

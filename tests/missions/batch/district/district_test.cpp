@@ -202,7 +202,7 @@ TEST_F(District, RequiresTerrainOnSlope) {
               HasSubstr("differ by 7.0 m, and the ground between the targets is unknown"));
 }
 
-/// Terrain in cells of 6 m that rises from 380 m in the west to 387 m in the east.
+/// Returns terrain in cells of 6 m that rises from 380 m in the west to 387 m in the east.
 std::string rising_ground() {
   constexpr int cells = 60;
   std::string row;

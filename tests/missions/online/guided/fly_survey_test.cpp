@@ -34,7 +34,7 @@ std::string mission_text() {
   return text.insert(text.find(vehicle) + vehicle.size(), "_ardupilot");
 }
 
-/// Work is done synchronously. The autopilot's time does not advance meanwhile.
+/// Does the work synchronously. The autopilot's time does not advance meanwhile.
 std::future<void> done_at_once(const std::function<void()>& work) {
   work();
   std::promise<void> done;

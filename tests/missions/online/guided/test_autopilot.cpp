@@ -19,8 +19,8 @@ constexpr double guided_timeout = 3.0;                  ///< GUID_TIMEOUT
 constexpr std::uint32_t guided = 4, loiter = 5, landing = 9;
 constexpr mavlink::Address itself{1, 1};
 
-/// Correction velocity for a position error: proportional for small errors, otherwise limited so
-/// that `limit` is sufficient for braking (AP_Math/control.cpp, sqrt_controller).
+/// Returns the correction velocity for a position error: proportional for small errors, otherwise
+/// limited so that `limit` is sufficient for braking (AP_Math/control.cpp, sqrt_controller).
 Vector3d square_root_controller(const Vector3d& error, double gain, double limit) {
   const double size = error.norm(), linear = limit / (gain * gain);
   if (size <= linear) return gain * error;

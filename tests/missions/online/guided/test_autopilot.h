@@ -72,9 +72,9 @@ class TestAutopilot {
   bool has_landed() const { return taken_off_ && !is_armed_; }
   std::uint32_t mode() const { return mode_; }
   const Eigen::Vector3d& position() const { return vehicle_.position(); }
-  /// Positions of the vehicle at 25 Hz.
+  /// Returns the positions of the vehicle at 25 Hz.
   const std::vector<Eigen::Vector3d>& track() const { return track_; }
-  /// Received set points in the mission frame.
+  /// Returns the received set points in the mission frame.
   const std::vector<Eigen::Vector3d>& set_points() const { return set_points_; }
 
  private:
@@ -135,7 +135,7 @@ class StallingPort : public SteppedPort {
 
   flight::mavlink::Bytes receive(double patience) override;
 
-  /// Position of the vehicle at the end of the pause.
+  /// Returns the position of the vehicle at the end of the pause.
   const std::optional<Eigen::Vector3d>& woken_at() const { return woken_at_; }
 
  private:

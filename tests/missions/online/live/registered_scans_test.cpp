@@ -38,7 +38,7 @@ geometry::Mesh solids(const std::vector<Eigen::AlignedBox3d>& boxes) {
   return mesh;
 }
 
-/// Three squares of 2 m.
+/// Returns three squares of 2 m.
 TestPose corner() {
   return {"corner",
           solids({{Vector3d(-0.2, -0.2, -0.2), Vector3d(2, 2, 0)},
@@ -49,7 +49,7 @@ TestPose corner() {
           {Vector3d(0.5, 0.5, 0.5), Vector3d(0.8, 0.8, 0.8)}};
 }
 
-/// 6 m wide, with a cupboard and a pillar.
+/// Returns a room 6 m wide, with a cupboard and a pillar.
 TestPose room() {
   geometry::Mesh mesh = tests::room_mesh({.width = 6.0, .height = 3.0, .wall = 0.2});
   geometry::append(mesh, solids({{Vector3d(-3, 1.5, 0), Vector3d(-1.2, 3, 2)},
@@ -61,7 +61,7 @@ TestPose room() {
           {Vector3d(-2, 2, 0.6), Vector3d(-1, 2.8, 1.6)}};
 }
 
-/// Building with a porch, a pilaster, eaves and ground, seen from outside.
+/// Returns a building with a porch, a pilaster, eaves and ground, seen from outside.
 TestPose building() {
   return {"building",
           solids({{Vector3d(-30, -30, -0.5), Vector3d(30, 30, 0)},
@@ -74,7 +74,7 @@ TestPose building() {
           {Vector3d(-2, -4, 2.5), Vector3d(2, -4, 4)}};
 }
 
-/// The base of a wall.
+/// Returns the base of a wall.
 TestPose edge() {
   return {"edge",
           solids({{Vector3d(-8, -8, -0.2), Vector3d(8, 8, 0)},
@@ -119,7 +119,7 @@ struct Trial {
   double shift, turn;          ///< remaining errors [m], [rad]
 };
 
-/// Pose error: 10 cm and 1 degree.
+/// Registers a scan with a pose error of 10 cm and 1 degree.
 Trial tried(const TestPose& pose, const sim::Scene& scene, double noise, std::uint64_t seed) {
   constexpr double shift = 0.1, angle = geometry::radians_per_degree;
   Numbers numbers(seed);

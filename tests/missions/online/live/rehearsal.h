@@ -152,15 +152,15 @@ inline std::string short_mission(std::string mission, const std::string& planner
   return mission.insert(mission.find(section) + section.size(), "name: " + planner + ", ");
 }
 
-/// Mission of a vehicle whose camera also measures en route. Its teapot is too distant and too
-/// round for the pose check, which would suspect some of the many frames.
+/// Returns a mission with a vehicle whose camera also measures en route. Its teapot is too distant
+/// and too round for the pose check, which would suspect some of the many frames.
 inline std::string moving_mission(const std::string& live = "", int views = 5) {
   std::string mission = short_mission(tests::flight_mission(live), "", views);
   const std::string section = "sensor: {";
   return mission.insert(mission.find(section) + section.size(), "capture: moving, ");
 }
 
-/// The teapot mission, measured finely enough for the pose check, with the keys in `live`.
+/// Returns the teapot mission, measured finely enough for the pose check, with the keys in `live`.
 inline std::string fine_mission(const std::string& live = "") {
   std::string mission = short_mission(tests::quick_mission(live), "see++");
   const std::string noise = "sigma: 0.03";

@@ -26,7 +26,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing_support::thrown_message;
 
-/// Camera of 64 x 48 pixels with 90-degree fields of view: f = 32 and 24.
+/// Returns a mission with a camera of 64 x 48 pixels and 90-degree fields of view: f = 32 and 24.
 config::MissionSetup make_setup(const std::string& more = "") {
   return config::parse_mission(
       "sensor: {width: 64, height: 48, horizontal_fov_deg: 90, vertical_fov_deg: 90,\n"

@@ -41,7 +41,7 @@ std::vector<float> flatten_points(const geometry::Scan& scan) {
   return {begin, begin + 3 * scan.points.size()};
 }
 
-/// Mission with a scanner that measures continuously, around a teapot of 20 m.
+/// Returns a mission with a scanner that measures continuously, around a teapot of 20 m.
 std::string scanner_mission() {
   return "scene: {model: builtin:teapot, longest_side: 20, ground: true}\n"
          "sensor: {lidar: velodyne_vlp16}\n"
