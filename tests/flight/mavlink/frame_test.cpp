@@ -97,8 +97,8 @@ TEST(Mavlink, SkipsUnknownMessages) {
   EXPECT_EQ(decode<Heartbeat>(frames.front())->custom_mode, 3U);
 }
 
-// After random bytes, a frame is found at the latest when another maximum-size frame has followed
-// it.
+// After random bytes, a frame is found once further bytes of at most the maximum frame size have
+// followed it.
 TEST(Mavlink, FindsFramesAfterRandomBytes) {
   std::mt19937_64 random(1);
   for (int i = 0; i < 2000; ++i) {

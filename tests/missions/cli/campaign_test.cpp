@@ -275,7 +275,7 @@ TEST_F(CampaignCommand, WritesPackagesWhenRequested) {
     EXPECT_TRUE(read_content(item / name) == read_content(folder_.path() / "plan" / name)) << name;
   }
   EXPECT_EQ(Json::parse(read_content(item / "summary.json"))["seed"], 3);
-  // Without packages, the runs have other checksums. Runs with the old ones are removed.
+  // Without packages, the run has another checksum, and the files of the old run are removed.
   std::string figures = read_content(campaign_);
   figures = figures.substr(0, figures.find("results:"));
   std::ofstream(campaign_) << figures;

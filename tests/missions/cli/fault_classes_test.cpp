@@ -170,7 +170,7 @@ std::string blanks(const TestFolder& folder, const std::string& name, std::size_
   return folder / name;
 }
 
-// Reading a file needs a multiple of its size: a cloud of 1 GiB once needed 4 GB.
+// Reading a file needs a multiple of its size: 4 GB for a cloud of 1 GiB.
 TEST(FaultClasses, RejectsFilesLargerThanMemoryLimits) {
   const TestFolder folder;
   EXPECT_THAT(rejection({"model", blanks(folder, "m.obj.gz", 257)}),

@@ -61,8 +61,8 @@ TEST_F(ResumedScan, DiscardsDataMissingFromJournal) {
   interrupt_at("% flown", clouds_);
   const std::string partial = read_content(folder_ / "part/scan.las");
   for (const char* name : {"scan.las", "scan.ply", "scan.rawlog", "preview.ply"}) {
-    // Replaces the file, as a restart does. The results share its data through a hard link and must
-    // not change.
+    // The file is replaced instead of written to, because the results share its data through a hard
+    // link and must not change.
     const fs::path file = journal_.parent_path() / name;
     const std::string content = read_content(file);
     fs::remove(file);

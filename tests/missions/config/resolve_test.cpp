@@ -104,8 +104,8 @@ TEST(Resolve, MinimisesTimeWhenSensorCapturesEnRoute) {
   EXPECT_EQ(goal(", goal: views" + moving), "views");
 }
 
-// For surveys with the M350 at 4 m/s, the measured cost of a view is 6.5 to 8 s. The stop time is
-// 0.5 s longer now.
+// In surveys with the M350 at 4 m/s, the measured cost of a view is 6.5 to 8 s. The stop includes
+// another 0.5 s of rest.
 TEST(ViewPrice, DependsOnViewDistanceOrStopTime) {
   const auto price = [](const std::string& more) {
     const config::MissionSetup setup =

@@ -124,8 +124,8 @@ double whole_time(const Faults& faults) {
   return flight.autopilot.time() - flight.autopilot.taken_off();
 }
 
-// Condition that once caused a fault: after braking, the vehicle is still ahead of its set point by
-// more than the tolerance of verified legs.
+// At the end of braking, the vehicle is ahead of its set point by more than the tolerance of
+// verified legs.
 TEST(GuidedFlight, OvershootsSetPointsOnTestAutopilot) {
   Flight flight({.jerk = heavy_jerk});
   std::stop_source stop;
