@@ -1,8 +1,8 @@
-# Fails with the names of the files if results depend on the processor, the number of threads, the C
-# library's function variants, or the folder, or if surveys differ from those in everywhere.sha256,
-# which was written on another machine. Run by ctest with PROGRAM, MISSIONS and FOLDER, on shortened
-# shipped missions. A change that intentionally changes surveys must say so and update the
-# checksums: -D RENEW=ON.
+# Checks that results are the same everywhere. Fails with the names of the files if results depend
+# on the processor, the number of threads, the C library's function variants, or the folder. Also
+# fails if surveys differ from those in everywhere.sha256, which was written on another machine. Run
+# by ctest with PROGRAM, MISSIONS and FOLDER, on shortened shipped missions. A change that
+# intentionally changes surveys must say so and update the checksums: -D RENEW=ON.
 cmake_minimum_required(VERSION 3.25)
 
 set(quick

@@ -17,9 +17,9 @@
 namespace skycap::faults {
 
 /// File names and contents, without durations, which differ between runs. Of JSON files it contains
-/// the lines with the seed and the completion flag, of CSV files all columns except the last, and
-/// of reports the first line. Of folders, such as those of finished trials, it contains the name.
-/// Files for resuming an unfinished survey are excluded.
+/// the lines with the seed and the completion flag. Of CSV files it contains all columns except the
+/// last, and of reports the first line. Of folders, such as those of finished trials, it contains
+/// the name. Files for resuming an unfinished survey are excluded.
 using Content = std::map<std::string, std::string>;
 
 Content read_content(const std::filesystem::path& folder);

@@ -202,7 +202,7 @@ TEST(SurveyLoop, StopsWhilePlanningView) {
   EXPECT_THAT(positions(result), ElementsAre(0, 1));
 }
 
-// Once there is a view to return with, the planner is not called for further views.
+// After a stop request, no further views are requested once there is a view to return.
 TEST(SurveyLoop, StopsWhileViewsAreRejected) {
   WalkingPlanner planner(1'000'000'000);
   std::stop_source source;

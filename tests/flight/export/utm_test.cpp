@@ -21,8 +21,8 @@ using testing::HasSubstr;
 using Context = std::unique_ptr<PJ_CONTEXT, decltype(&proj_context_destroy)>;
 using Object = std::unique_ptr<PJ, decltype(&proj_destroy)>;
 
-/// Radcliffe Square in Oxford, a position just south of the equator in a zone that extends north of
-/// it, and a position in the far south near the border of its zone.
+/// Radcliffe Square in Oxford; a position just south of the equator in a zone that extends north of
+/// it; a position in the far south near the border of its zone.
 const Site oxford{{51.75343, -1.25401, 110.0}, {}};
 const Site quito{{-0.002, -78.45, 2850.0}, {}};
 const Site ushuaia{{-54.8, -66.02, 40.0}, {}};

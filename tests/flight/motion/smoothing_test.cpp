@@ -83,8 +83,8 @@ TEST(Curve, MatchesCubicBetweenItsStates) {
   }
 }
 
-// The peaks of a minimum-jerk motion over L = 10 m in T seconds are 15/8 of the mean speed, 10 /
-// sqrt(3) L / T^2 of acceleration and 60 L / T^3 of jerk.
+// Peaks of a minimum-jerk motion over L = 10 m in T seconds: speed 15/8 of the mean, acceleration
+// 10 / sqrt(3) L / T^2, jerk 60 L / T^3.
 TEST(Curve, NeedsSlowdownOfMinimumJerkMotion) {
   const Motion motion = calm();
   const Curve curve{segment_between({Vector3d::Zero()}, {Vector3d(10, 0, 0)}, 1.0)};

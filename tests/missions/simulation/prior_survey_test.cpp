@@ -131,7 +131,7 @@ TEST(PriorSurvey, NamesKeysOfInvalidSources) {
               HasSubstr("key prior[0].role: truth conflicts with scene.model"));
 }
 
-/// Returns the height of a plane with a slope of 1 in 20 to the east, 100 m in each direction.
+/// Returns the height of a plane with a slope of 1 in 20 to the east.
 double slope(double x) { return 0.05 * x; }
 geometry::Mesh hillside() {
   return {{{-100, -100, slope(-100)},

@@ -182,8 +182,8 @@ TEST(Geodesy, ReadsEastFirstByDefault) {
   EXPECT_NEAR(geodetic(map, {3451262.0, 5429191.0, 0.0}).x(), 8.332915889, 1e-8);
 }
 
-/// A metre on the map is 0.9996 m on the ground at the central meridian and 1.0004 m at the border
-/// of the zone, where grid north points east of true north.
+/// A metre on the map is 0.9996 m on the ground at the central meridian. At the border of the zone
+/// it is 1.0004 m, and grid north points east of true north.
 TEST(Geodesy, CorrectsGridScaleAndConvergence) {
   for (const double longitude : {9.0, 10.5, 12.0}) {
     const flight::GeodeticPoint origin{48.0, longitude, 0.0};
