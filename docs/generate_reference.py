@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
-"""Renews the generated parts of docs/reference from the program itself.
+"""Regenerates the generated parts of docs/reference from the program.
 
-A part stands between two comments of a page:
+A part is between two comments of a page:
 
     <!-- generated: commands -->
     <!-- end of generated -->
 
-    docs/generate_reference.py --program build/release           renew the pages
+    docs/generate_reference.py --program build/release           update the pages
     docs/generate_reference.py --program build/release --check   compare only; exit code 1: stale
 
-Needs skycap in the build folder; skycap_ros2 and the Python module (in python/) where pages have
-parts of them. With --skip-missing parts whose program is not built are left as they are.
+Requires skycap in the build folder, and skycap_ros2 and the Python module (in python/) for their
+parts. With --skip-missing, parts whose program is not built remain unchanged.
 """
 
 import argparse
@@ -31,11 +31,11 @@ PART = re.compile(r"(<!-- generated: ([\w+ ]+) -->\n)(.*?)(<!-- end of generated
 
 
 class MissingProgram(Exception):
-    """A part needs a program or module that is not built."""
+    """A part requires a program or module that is not built."""
 
 
 def cell(text):
-    """A text as a cell of a table, in which Markdown finds nothing to format."""
+    """Returns the text as a table cell, with Markdown characters escaped."""
     text = text.replace("&", "&amp;").replace("<", "&lt;").replace("|", "\\|")
     return re.sub(r"(?<!\w)([*_])|([*_])(?!\w)", r"\\\1\2", text)
 
@@ -52,7 +52,7 @@ def table(head, rows):
 # Commands.
 
 class Help:
-    """What PROGRAM [COMMAND] --help prints, taken apart."""
+    """Parsed output of PROGRAM [COMMAND] --help."""
 
     def __init__(self, program, *command):
         if not program.exists():
@@ -86,20 +86,20 @@ class Help:
         return [row for group in groups for row in self.groups.get(group, [])]
 
     def options(self):
-        """All options but --help."""
+        """Returns all options except --help."""
         others = [name for name in self.groups if name not in ("Positionals", "Subcommands")]
         return [row for row in self.rows(*others) if "--help" not in row[0]]
 
 
 def name_and_value(head):
-    """An option's names, and what it takes, of the left side of its line."""
+    """Returns an option's names and value type from the left column."""
     if match := re.match(r"([\w.,-]+)\s+(.*)", head):
         return [match[1], match[2]]
     return [head, ""]
 
 
 def argument_rows(rows):
-    """Rows (argument, value, meaning) of a table."""
+    """Returns the rows (argument, value, meaning) of a table."""
     found = []
     for name, value, meaning in rows:
         value = re.sub(r"\s*Excludes: .*", "", value)
@@ -113,7 +113,7 @@ def argument_rows(rows):
 
 
 def value_text(value):
-    """What an option takes, in words: "UINT:INT in [1 - 100]" is an integer from 1 to 100."""
+    """Describes an option's value in words: "UINT:INT in [1 - 100]" is an integer from 1 to 100."""
     value = re.sub(r"^(?:TEXT|UINT|FLOAT|INT):(?=\S)", "", value)
     if choices := re.fullmatch(r"\{(.*)\}", value):
         return " or ".join(choices[1].split(","))
@@ -166,7 +166,7 @@ def section_of(row):
     return re.split(r"[.\[]", path)[0] if re.search(r"[.\[]", path) or path == "prior" else ""
 
 
-# Keys of the section planner that are not for SEE and SEE++ alone, and ablation switches.
+# Keys of the section planner that are not specific to SEE and SEE++, and ablation switches.
 COMMON_KEYS = re.compile(
     r"\| `planner\.(name|preset|goal|density|resolution_radius|spacing|view_distance|scene_box\.\w+"
     r"|wanted_coverage|target_coverage|least_gain|min_gain)`")
@@ -178,7 +178,7 @@ def is_see_key(row):
 
 
 def keys_part(build, words):
-    """The keys of sections; of the section planner, those of one kind."""
+    """Returns the keys of sections; for the section planner, the keys of one kind."""
     rows = key_rows(build)
     kinds = {"planner": COMMON_KEYS.match, "see": is_see_key, "ablation": ABLATION_KEYS.match}
     chosen = []
@@ -194,7 +194,7 @@ def keys_part(build, words):
 
 
 def missing_keys(build, text):
-    """The keys that no part of the page lists."""
+    """Returns the keys that no part of the page lists."""
     return [row for row in key_rows(build) if row not in text]
 
 
@@ -219,14 +219,14 @@ def python_part(build):
 
 
 def documentation(thing):
-    """A docstring without the signature that pybind11 puts first."""
+    """Returns a docstring without the signature that pybind11 puts first."""
     text = inspect.cleandoc(getattr(thing, "__doc__", None) or "")
     text = re.sub(r"\A\w+\([^\n]*\n--\n+", "", text)
     return re.sub(r"\A\w+\(self[^\n]*\n+", "", text).strip()
 
 
 def markdown(text):
-    """A docstring as one line of Markdown."""
+    """Returns a docstring as one line of Markdown."""
     return cell(" ".join(text.split())).replace("\\|", "|")
 
 
@@ -272,7 +272,7 @@ def member_row(node, member, thing):
 
 # Messages.
 
-AREAS = [  # what a source's path has, and what its messages are about; the first that fits counts
+AREAS = [  # (part of the path, title of the messages); the first match is used
     (r"clients/ros2", "skycap_ros2"),
     (r"missions/cli/", "Command line"),
     (r"missions/config/preset_files|missions/config/(sensor|vehicle)_reader|sim/sensors",
@@ -330,7 +330,7 @@ def messages_part(_build):
 
 
 def part(name, build):
-    """The text of a generated part."""
+    """Returns the text of a generated part."""
     words = name.split()
     makers = {"commands": commands_part, "python": python_part, "messages": messages_part,
               "ros2 options": ros2_part}
@@ -342,7 +342,7 @@ def part(name, build):
 
 
 def renewed(page, text, build, skips_missing):
-    """The page as it should be."""
+    """Returns the updated page."""
     def renew(match):
         try:
             return match[1] + part(match[2], build) + match[4]
@@ -359,7 +359,7 @@ def renewed(page, text, build, skips_missing):
 
 
 def stale_pages(build, writes, skips_missing):
-    """Renews pages, or shows how they differ; yields the pages that differ."""
+    """Updates the pages or prints the differences. Yields the stale pages."""
     for page in sorted(PAGES.glob("*.md")):
         name = page.relative_to(ROOT)
         text = page.read_text(encoding="utf-8")

@@ -1,4 +1,4 @@
-"""Anchors of headings as GitHub makes them, so that links hold there and on the site."""
+"""Heading anchors in GitHub's format, so that links work on GitHub and on the site."""
 
 import re
 

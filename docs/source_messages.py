@@ -1,5 +1,6 @@
-"""Extracts the texts of errors and warnings from C++ sources: every call of a function that raises
-or reports one, with its string literals joined and an ellipsis for each value."""
+"""Extracts error and warning messages from C++ sources. Finds each call of a function that raises or
+reports a message, joins its string literals, and replaces each value by an ellipsis.
+"""
 
 import re
 
@@ -10,9 +11,9 @@ CALL = re.compile(r"Error|FlightFailure|error_message|(?:add_)?problem_?|warn|wa
                   r"(?:fail|refuse|require|reject|throw|report_fail|fault)\w*")
 RETURNS = re.compile(r"find_defect|find_load_error|closedness_error|range_error|what_is_\w+|\w+_reason|\w+_complaint|"
                      r"\w+_key_message")
-RULE = re.compile(  # how a rule for a value begins
+RULE = re.compile(  # beginning of a rule for a value
     r"(?:an?|above|at|between|from|finite|greater|large|less|more|not|one|positive|zero)\b")
-VERB = re.compile(  # a word that makes a sentence
+VERB = re.compile(  # a word that occurs in sentences
     r"\b(?:is|are|was|were|has|have|had|must|can|cannot|does|do|may|would|no|not|missing|lost"
     r"|more than|\w{3,}s|go|fail|refuse\w*)\b")
 VALUE = "…"
@@ -20,14 +21,14 @@ OPENING, CLOSING = "([{", ")]}"
 
 
 def tokens(text):
-    """The tokens of a source without comments, preprocessor lines and blanks."""
+    """Returns the tokens of a source without comments, preprocessor lines and blanks."""
     text = re.sub(r"^[ \t]*#.*$", "", text, flags=re.MULTILINE)
     found = (match[0] for match in TOKEN.finditer(text))
     return [token for token in found if not token.isspace() and not token.startswith(("//", "/*"))]
 
 
 def end_of_group(parts, start):
-    """The index of the bracket that closes the one at `start`."""
+    """Returns the index of the bracket that closes the one at `start`."""
     depth = 0
     for index in range(start, len(parts)):
         depth += (parts[index] in OPENING) - (parts[index] in CLOSING)
@@ -37,7 +38,7 @@ def end_of_group(parts, start):
 
 
 def split(parts, separator):
-    """The parts between separators outside of brackets."""
+    """Returns the parts between separators outside brackets."""
     found, depth = [[]], 0
     for token in parts:
         depth += (token in OPENING) - (token in CLOSING)
@@ -57,7 +58,7 @@ def unquoted(token):
 
 
 def text_of(parts):
-    """What an expression prints: literals as they are, an ellipsis for each value."""
+    """Returns the printed text of an expression: literals unchanged, an ellipsis for each value."""
     terms = split(parts, "+")
     if len(terms) > 1:
         return "".join(text_of(term) for term in terms)
@@ -73,7 +74,7 @@ def text_of(parts):
 
 
 def choice_of(parts):
-    """Both texts of a conditional expression, where both are texts."""
+    """Returns both strings of a conditional expression if both operands are strings."""
     last = split(parts, "?")[-1]
     yes, no = text_of(last[:last.index(":")]), text_of(last[last.index(":") + 1:])
     if VALUE in (yes, no) or not yes or not no:
@@ -96,7 +97,7 @@ def call_text(parts):
 
 
 def texts_in(source):
-    """Yields the texts of a source's messages."""
+    """Yields the message texts of a source."""
     parts = tokens(source)
     for index, token in enumerate(parts[:-1]):
         is_definition = parts[index - 1] in ("string", ">", "*")
@@ -112,13 +113,13 @@ def texts_in(source):
 
 
 def rule_sentence(rule):
-    """A rule for a value as a sentence: some rules are sentences of their own."""
+    """Returns a rule for a value as a sentence. Some rules already are sentences."""
     return rule if " must " in rule else f"it must be {rule}"
 
 
 def texts_of_call(arguments):
-    """The texts among a call's arguments. require("width", value, value > 0, "positive") prints a
-    sentence with the field's name and the rule; refuse("width", "is missing") prints both."""
+    """Returns the strings among a call's arguments. require("width", value, value > 0, "positive")
+    prints the field name and the rule; refuse("width", "is missing") prints both."""
     texts = [text_of(argument) for argument in arguments if any(map(is_literal, argument))]
     if len(texts) == 1 and RULE.match(texts[0]) and len(arguments) > 2:
         return [f"{VALUE} is {VALUE}; {rule_sentence(texts[0])}"]
@@ -130,7 +131,7 @@ def texts_of_call(arguments):
 
 
 def returned(parts, index):
-    """The texts that the function whose name is at `index` returns."""
+    """Returns the strings that the function whose name is at `index` returns."""
     start = end_of_group(parts, index + 1) + 1
     if start >= len(parts) or parts[start] != "{":
         return
@@ -143,16 +144,17 @@ def returned(parts, index):
 
 
 def is_message(text):
-    """Whether a text is a sentence: names of keys, options and fields are arguments, too."""
+    """Returns true if a string is a sentence. Names of keys, options and fields are arguments as
+    well."""
     words = re.findall(r"[A-Za-z]{2,}", text)
     return len(words) >= 3 and ("; " in text or VERB.search(text) is not None)
 
 
 def messages_in(source):
-    """The messages of a source in its order, each once: (what is wrong, what to do)."""
+    """Returns the messages of a source in order, without duplicates: (problem, remedy)."""
     found = {}
     for text in texts_in(source):
-        text = re.sub(r"\{(?::[^{}]*)?\}", VALUE, text)  # a format's place for a value
+        text = re.sub(r"\{(?::[^{}]*)?\}", VALUE, text)  # replacement field of a format string
         text = re.sub(r"\s+", " ", re.sub(f"(?:{VALUE})+", VALUE, text)).strip(" :,")
         if is_message(text):
             problem, _, remedy = text.rpartition("; ")

@@ -1,5 +1,5 @@
-# Writes the header HEADER from TEMPLATE, if it changes. BUILD_COMMIT is the commit of SOURCES, with
-# "+" after it if files differ from it, or "unknown" without git.
+# Writes the header HEADER from TEMPLATE if its content changes. BUILD_COMMIT is the commit of
+# SOURCES, followed by "+" if files differ from it, or "unknown" without git.
 cmake_minimum_required(VERSION 3.25)
 set(BUILD_COMMIT unknown)
 find_program(git git)

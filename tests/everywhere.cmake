@@ -1,8 +1,8 @@
-# Fails, naming the files, if what a processor can do, the number of threads, the C library's choice
-# of functions, or the place where it runs has a say in what comes out; or if a survey is another
-# one than when everywhere.sha256 was written, which is on another machine.
-# Run by ctest with PROGRAM, MISSIONS and FOLDER; the missions are shipped ones, cut short. A change
-# that is meant to change surveys says so and renews the sums: -D RENEW=ON.
+# Checks that results are the same everywhere. Fails with the names of the files if results depend
+# on the processor, the number of threads, the C library's function variants, or the folder. Also
+# fails if surveys differ from those in everywhere.sha256, which was written on another machine. Run
+# by ctest with PROGRAM, MISSIONS and FOLDER, on shortened shipped missions. A change that
+# intentionally changes surveys must say so and update the checksums: -D RENEW=ON.
 cmake_minimum_required(VERSION 3.25)
 
 set(quick
@@ -35,12 +35,12 @@ endfunction()
 set(reference ${FOLDER}/reference)
 survey(${reference} THREADS 1 MISSIONS ${quick} ${slow} ENVIRONMENT SKYCAP_INSTRUCTION_SET=baseline)
 
-# summary.json and scan.json tell how long it took and on how many threads.
+# summary.json and scan.json contain durations and the number of threads.
 file(GLOB_RECURSE results RELATIVE ${reference} ${reference}/*.csv ${reference}/*.ply
      ${reference}/*.las ${reference}/*.tum)
 list(SORT results)
 
-# Of surveys, what was decided and measured; routes have tests of their own.
+# Of surveys, only decisions and measurements are compared. Routes have their own tests.
 set(sums "")
 foreach(file IN LISTS results)
   if(file MATCHES "/(views\\.csv|cloud\\.ply|.*\\.las)$|^models/")

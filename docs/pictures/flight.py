@@ -6,7 +6,7 @@ from svg import Svg
 
 
 def house(svg, x, ground, scale, colour="stone"):
-    """A building 10 m wide and 9 m high."""
+    """Draws a building 10 m wide and 9 m high."""
     w, h = 10 * scale, 6 * scale
     svg.polygon([(x, ground), (x, ground - h), (x + w / 2, ground - 9 * scale), (x + w, ground - h), (x + w, ground)],
                 fill=colour, stroke="soft")
@@ -30,7 +30,7 @@ def verified():
     svg.rect(330, 130, 330, ground - 130, fill="paper")
     svg.rect(330, 130, 330, ground - 130, fill="red", fill_opacity=0.10, stroke="red", dash="7 5")
     svg.text(344, 152, "flight.unknown_box", 12.5, "red", bold=True)
-    # Space that scans have shown free, around the building.
+    # Measured free space around the building.
     free = [(330, 200), (470, 172), (660, 196), (660, 360), (612, 408), (590, 330), (590, 264), (505, 214), (420, 264),
             (420, 330), (396, 410), (330, 396)]
     svg.polygon(free, fill="green", fill_opacity=0.22)
@@ -51,7 +51,7 @@ def verified():
     drone(svg, 356, 334)
     svg.line(100, ground, 160, ground, stroke="ink", width=4)
     svg.text(130, 458, "pad", 12, "ink", "middle")
-    # Things nobody knows of: a tree, a wire.
+    # Unobserved obstacles: a tree, a wire.
     svg.line(250, ground, 250, 424, stroke="amber", width=4)
     svg.circle(250, 408, 20, fill="amber", fill_opacity=0.35, stroke="amber")
     svg.line(690, 300, 872, 312, stroke="amber", width=1.6)
@@ -117,7 +117,7 @@ def free_space():
 
 
 def frames_and_altitudes(mission):
-    """Altitude references with the figures of a mission: height of the site and geoid undulation."""
+    """Draws the altitude references of a mission: site altitude and geoid undulation."""
     ellipsoid, undulation = mission["ellipsoid_height"], mission["geoid_undulation"]
     amsl = ellipsoid - undulation
     height = mission["return_height"]
@@ -158,7 +158,7 @@ def frames_and_altitudes(mission):
 
 
 def clearance_budget(flight):
-    """The terms of the clearance as a survey's summary has them."""
+    """Draws the clearance budget from the summary of a survey."""
     terms = [("vehicle radius", flight["vehicle_radius"], "ink"), ("position error", flight["position_error"], "blue"),
              ("tracking error", flight["tracking_error"], "violet"), ("map error", flight["map_error"], "amber"),
              ("margin", flight["margin"], "green")]
@@ -193,7 +193,7 @@ def clearance_budget(flight):
 
 
 def return_profile(mission):
-    """Returns from the waypoints of a mission, in a vertical section through distance from the pad."""
+    """Draws the returns from the waypoints of a mission: altitude against distance from the pad."""
     places, height, pad = mission["waypoints"], mission["return_height"], mission["pad"]
     reach = max(((x - pad[0]) ** 2 + (y - pad[1]) ** 2) ** 0.5 for x, y, _ in places)
     svg = Svg(860, 420, "Return to launch", "Climb to the return altitude, level flight to the pad, descent.")

@@ -6,7 +6,8 @@ from svg import Plot, Svg
 
 
 def near_probability(distance, reach, noise):
-    """Probability that a point `distance` away, with isotropic normal noise, falls within `reach`."""
+    """Returns the probability that a point at `distance`, with isotropic normal noise, is within
+    `reach`."""
     if noise == 0:
         return 1.0 if distance < reach else 0.0
     if distance < 1e-9:
@@ -17,7 +18,8 @@ def near_probability(distance, reach, noise):
 
 
 def covered(rays_per_area, noise):
-    """1 - mean over the grid's offsets of prod(1 - p): lengths in units of the coverage distance."""
+    """Returns 1 - mean over the grid's offsets of prod(1 - p). Lengths are in units of the coverage
+    distance."""
     spacing = 1.0 / math.sqrt(rays_per_area)
     reach = int((1.0 + 4.0 * noise) / spacing) + 1
     steps, missed = 6, 0.0
@@ -44,7 +46,7 @@ def coverage_model():
         x, y = plot.at(*places[place])
         svg.text(x + 10, y + 14, label, 12.5, colour, halo=True)
     svg.text(70, 34, "More rays and less noise make coverage more likely", 14, "ink", bold=True)
-    # The patch and its rays, as a small picture.
+    # Inset: the patch and its rays.
     x0, y0, step = 700, 92, 26
     for i in range(5):
         for j in range(4):
@@ -89,7 +91,7 @@ def surfel(svg, x, y, angle, size, colour, dash=None, normal=None):
 
 
 def predicted_surface():
-    """Patches k = 0, 1, 2 at the offsets and with the edges of the formulas, to scale."""
+    """Draws the patches k = 0, 1, 2 to scale, with the offsets and edges of the formulas."""
     h = 18.0
     svg = Svg(900, 420, "Predicted surface", "Patches straight on, over an edge, up a step, and on the back of a thin object.")
     svg.text(30, 34, "Where the measured surface ends, four kinds of patches are predicted", 14, "ink", bold=True)
@@ -207,7 +209,7 @@ def see_update():
     svg = Svg(900, 400, "One update of SEE++", "Core points, frontiers and outliers; the proposed view; the view moved clear of an occlusion.")
     svg.text(30, 34, "Classify", 14, "ink", bold=True)
     svg.text(470, 34, "Propose, and avoid occlusions", 14, "ink", bold=True)
-    # Points of a measured wall: a dense part that thins out to the right.
+    # Points of a measured wall, whose density decreases to the right.
     dense = [(60 + 17 * i + 5 * ((i * 7 + j * 3) % 3), 150 + 17 * j + 4 * ((i + 2 * j) % 3)) for i in range(11) for j in range(8)]
     rim = [(256 + 6 * (j % 2), 150 + 17 * j) for j in range(8)]
     beyond = [(300, 170), (330, 252), (352, 140), (390, 218)]
@@ -251,7 +253,7 @@ def see_update():
 def volumetric_ray():
     svg = Svg(860, 400, "A ray of a volumetric planner", "Voxels along a candidate's ray and what the gains count.")
     side, left, top, columns, rows = 34, 60, 80, 12, 7
-    # A past view on the left has seen the column of occupied voxels; what is behind it is in shadow.
+    # A previous view on the left observed the column of occupied voxels. Voxels behind it are in shadow.
     occupied = {(5, 2), (5, 3), (5, 4)} | {(9, 6), (10, 6), (8, 6)}
     for i in range(columns):
         for j in range(rows):

@@ -1,4 +1,4 @@
-"""Pictures that are drawn from the results of surveys: mission file, coverage, report."""
+"""Pictures drawn from survey results: mission file, coverage, report."""
 
 import base64
 import csv
@@ -15,11 +15,11 @@ import zipfile
 from svg import Plot, Svg
 
 KML = "{http://www.opengis.net/kml/2.2}"
-EARTH_RADIUS = 6371008.8  # [m]; places of a site are at most some kilometres apart
+EARTH_RADIUS = 6371008.8  # [m]; a site is at most some kilometres wide
 
 
 class Lazy:
-    """A value that is computed when it is first needed."""
+    """A value that is computed on first use."""
 
     def __init__(self, make):
         self._make, self._value = make, None
@@ -39,7 +39,7 @@ def summary_of(folder):
 
 
 def setting(summary, key, default=None):
-    """A key of the mission file, from the settings of a summary, flat or nested."""
+    """Returns a key of the mission file from the settings of a summary, flat or nested."""
     node = summary["settings"]
     if key in node:
         return node[key]
@@ -51,7 +51,8 @@ def setting(summary, key, default=None):
 
 
 def read_mission(folder):
-    """What the pictures of the flight need: figures of the summary, and waypoints of the KMZ file."""
+    """Reads the data for the pictures of the flight: the summary, and the waypoints of the KMZ
+    file."""
     summary = summary_of(folder)
     flight, wayline = summary["flight"], read_kmz(folder / "mission.kmz")
     return {
@@ -67,7 +68,8 @@ def read_mission(folder):
 
 
 def read_kmz(file):
-    """Waypoints with heights and actions, as DJI's applications read them from waylines.wpml."""
+    """Returns the waypoints with altitudes and actions, as DJI's applications read them from
+    waylines.wpml."""
     with zipfile.ZipFile(file) as archive:
         root = xml.fromstring(archive.read("wpmz/waylines.wpml"))
         template = xml.fromstring(archive.read("wpmz/template.kml"))
@@ -110,7 +112,7 @@ def action_text(kind, values):
 
 
 def kmz(folder):
-    """Plan view, altitude profile and actions of mission.kmz."""
+    """Draws the plan view, altitude profile and actions of mission.kmz."""
     wayline = read_kmz(folder / "mission.kmz")
     points, home = wayline["points"], wayline["home"]
     latitude0, longitude0 = home
@@ -199,7 +201,7 @@ def kmz(folder):
 
 
 def coverage_over_views(folder):
-    """Ground truth of every view, and the planner's final estimate."""
+    """Draws the ground-truth coverage after each view and the planner's final estimate."""
     summary = summary_of(folder)
     with open(folder / "views.csv", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
@@ -230,7 +232,7 @@ def coverage_over_views(folder):
 
 
 def read_ply(file):
-    """Columns of the vertices of a binary little-endian PLY file, by name."""
+    """Returns the vertex columns of a binary little-endian PLY file by name."""
     data = file.read_bytes()
     end = data.index(b"end_header\n") + len(b"end_header\n")
     kinds = {"float": "f", "double": "d", "uchar": "B", "uint8": "B", "uint": "I", "uint32": "I", "int": "i", "ushort": "H"}
@@ -247,7 +249,7 @@ def read_ply(file):
 
 
 def coverage_classes(folder):
-    """The samples of true_coverage.ply, from two sides."""
+    """Draws the samples of true_coverage.ply from two sides."""
     names, rows = read_ply(folder / "true_coverage.ply")
     index = {name: i for i, name in enumerate(names)}
     summary = summary_of(folder)
@@ -293,7 +295,7 @@ def coverage_classes(folder):
 
 
 def photograph(page, width, height):
-    """A JPEG of a report page by headless Chromium, as base64."""
+    """Returns a JPEG screenshot of a report by headless Chromium, as base64."""
     with tempfile.TemporaryDirectory() as folder:
         image = pathlib.Path(folder) / "page.png"
         subprocess.run(["chromium", "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",

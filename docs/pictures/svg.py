@@ -26,7 +26,7 @@ def number(value):
 
 
 class Svg:
-    """A picture under construction; coordinates are pixels, y down."""
+    """A picture under construction. Coordinates are pixels, with y down."""
 
     def __init__(self, width, height, title, description):
         self.width, self.height = width, height
@@ -58,7 +58,7 @@ class Svg:
         self.add(f'<circle cx="{number(x)}" cy="{number(y)}" r="{number(radius)}" style="{self.style(**style)}"/>')
 
     def points(self, places, radius, colour):
-        """Many equal dots as one element."""
+        """Adds many equal dots as one element."""
         path = "".join(f"M{number(x)} {number(y)}h0" for x, y in places)
         self.add(f'<path d="{path}" style="fill:none;stroke:var(--{colour});stroke-width:{2 * radius:g};'
                  'stroke-linecap:round"/>')
@@ -78,7 +78,7 @@ class Svg:
         self.add(f'<path d="{data}" style="{self.style(**style)}"/>')
 
     def text(self, x, y, text, size=13, colour="ink", anchor="start", bold=False, turn=None, halo=False):
-        """One or several lines (separated by newlines); `y` is the first baseline."""
+        """Adds one or more lines, separated by newlines. `y` is the first baseline."""
         extra = ";font-weight:600" if bold else ""
         extra += ";stroke:var(--paper);stroke-width:4px;paint-order:stroke;stroke-linejoin:round" if halo else ""
         rotate = f' transform="rotate({turn:g} {number(x)} {number(y)})"' if turn else ""
@@ -91,14 +91,14 @@ class Svg:
         self.polygon([(x, y), *side], fill=colour)
 
     def arrow(self, places, colour="ink", width=1.8, dash=None, both=False):
-        """A polyline with a head at its end, or at both ends."""
+        """Adds a polyline with an arrowhead at its end, or at both ends."""
         self.polyline(places, stroke=colour, width=width, dash=dash)
         ends = [(places[-2], places[-1])] + ([(places[1], places[0])] if both else [])
         for (x1, y1), (x2, y2) in ends:
             self.arrow_head(x2, y2, math.atan2(y2 - y1, x2 - x1), colour)
 
     def dimension(self, x1, y1, x2, y2, label, colour="soft", offset=(6, 4), anchor="start", size=12):
-        """A double arrow with a label beside its middle."""
+        """Adds a double arrow with a label next to its middle."""
         self.arrow([(x1, y1), (x2, y2)], colour, 1.3, both=True)
         self.text((x1 + x2) / 2 + offset[0], (y1 + y2) / 2 + offset[1], label, size, colour, anchor)
 
@@ -107,7 +107,7 @@ class Svg:
         self.text(x, y + 4.3, label, 12, "paper", "middle", bold=True)
 
     def box(self, x, y, width, height, title, lines="", colour="ink", fill="panel", size=12.5):
-        """A rounded box with a title and some small text."""
+        """Adds a rounded box with a title and small text."""
         self.rect(x, y, width, height, 8, fill=fill, stroke=colour)
         self.text(x + width / 2, y + 22, title, 14, colour, "middle", bold=True)
         if lines:

@@ -1,5 +1,6 @@
-// Certifies a route against a mesh of one's own: which legs come nearer than 2 m to anything?
-// `verify_route [MESH]` reads PLY, OBJ, STL or OFF; without a mesh a tower of 10 m x 10 m x 30 m.
+// Checks the legs of a route against a mesh and prints the legs that are closer than 2 m to it.
+// `verify_route [MESH]` reads PLY, OBJ, STL or OFF files. Without a mesh it uses a tower of 10 x 10
+// x 30 m.
 #include <cstdio>
 
 #include <skycap/flight/clearance.h>
@@ -14,7 +15,7 @@ int main(int argc, char** argv) try {
   const flight::KnownSpace space(
       {.mesh = argc > 1 ? geometry::read_mesh(argv[1]) : flight::surface(tower),
        .ground_height = 0.0});
-  // Along the south side, over the roof's edge, and down on the other side.
+  // Along the south side, over the edge of the roof, and down on the other side.
   const std::vector<Eigen::Vector3d> route{
       {-20, -12, 10}, {20, -12, 10}, {20, -12, 31}, {-20, 8, 31}, {-20, 12, 5}};
   const auto violations = flight::check_route(route, space, 2.0);

@@ -1,5 +1,5 @@
-/// What the sources of these folders are: each shows one public header in use, is named after it,
-/// and knows what must come out.
+/// Base of the examples in these folders. Each example shows the use of one public header, has its
+/// name, and checks its own result.
 #pragma once
 
 #include <filesystem>
@@ -22,7 +22,7 @@ class Example {
   }
 };
 
-/// A place for a file that an example writes.
+/// Returns the path for a file that an example writes.
 inline std::filesystem::path scratch(const std::string& name) {
   return std::filesystem::current_path() / ("example_" + name);
 }

@@ -1,4 +1,4 @@
-// Runs all examples: ends with 0 if each gives what it says.
+// Runs all examples. Exit code 0 if all results are correct.
 #include <cstdio>
 #include <exception>
 

@@ -1,4 +1,4 @@
-/// A tower with a station on each side, for the examples of flights.
+/// Tower with a capture point on each side, for the examples of flights.
 #pragma once
 
 #include <vector>

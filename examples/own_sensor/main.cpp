@@ -1,5 +1,5 @@
-// Plans a survey with a sensor of one's own, be it a driver or a simulator: here rays on a ball.
-// Prints each view; ends with 0 when the planner finds nothing more to look at.
+// Plans a survey with a custom sensor, either a driver or a simulator: here, rays that hit a ball.
+// Prints each view. Exit code 0 when the survey is complete.
 #include <cmath>
 #include <cstdio>
 

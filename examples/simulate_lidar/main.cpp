@@ -1,4 +1,5 @@
-// Simulates a laser scanner into a buffer of one's own: 16 lasers that pass by a teapot.
+// Simulates a laser scanner with 16 lasers that moves past a teapot, and processes the returns in a
+// buffer.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -29,14 +30,15 @@ int main() {
   config.errors.sigma = 0.01;  // [m]
   const sim::Lidar lidar(config);
 
-  // Half a second along x, eight metres before the scene.
+  // 0.5 s along x, 8 m in front of the scene.
   const sim::Trajectory path(
       {{.time = 0.0, .position = {-1.0, -8.0, 1.5}}, {.time = 0.5, .position = {1.0, -8.0, 1.5}}});
   const sim::LidarFlight flight{.ground_truth = path, .estimated = path};
 
   std::vector<MyPoint> buffer;
   const std::uint64_t firings = lidar.firings(path);
-  constexpr std::uint64_t chunk = 1024;  // of firings: memory stays small, however long the flight
+  // Number of firings; a small chunk limits the memory for flights of any length.
+  constexpr std::uint64_t chunk = 1024;
   sim::LidarReturns returns;
   for (std::uint64_t first = 0; first < firings; first += chunk) {
     returns =

@@ -1,12 +1,14 @@
-/// A whole frame of the depth camera, noise and cloud included, against Embree's bare casting of
-/// its rays and against the loop over single rays that most simulators have; and our own casting
-/// alone against Embree's, which is what the same bytes on every processor cost.
+/// Benchmark of a complete frame of the depth camera, including noise and point cloud. It is
+/// compared with Embree casting the same rays, and with the loop over single rays that most
+/// simulators use. Skycap's ray casting alone is also compared with Embree's, because bit-identical
+/// results on every processor have a cost.
 ///
 ///   depth_camera_benchmark [--threads N] [--rounds N] [--largest]
 ///
-/// The frame has 2400 x 1750 pixels, all of which return; meshes have 70 thousand, 1 million and,
-/// with --largest, 10 million triangles. The bare loop casts the same rays in packets and the same
-/// tiles, also on all threads, and keeps only their distances. Our own casting goes tile by tile.
+/// The frame has 2400 x 1750 pixels, all of which return. The meshes have 70 thousand, 1 million
+/// and, with --largest, 10 million triangles. The Embree loop casts the same rays in the same
+/// packets and tiles, also on all threads, and stores only their distances. Skycap's casting alone
+/// runs tile by tile.
 
 #include <algorithm>
 #include <array>
@@ -44,7 +46,7 @@ struct BareRays {
   }
 };
 
-/// Of one ray of a packet after the other.
+/// Casts the rays of a packet one at a time.
 template <int width>
 struct EmbreeCaster {
   const benchmarks::EmbreeMesh& mesh;
@@ -93,7 +95,7 @@ void cast_bare(const BareRays& rays, unsigned threads, std::vector<float>& range
   });
 }
 
-/// Tiles of 16 x 16 pixels, as frames cast them.
+/// Casts tiles of 16 x 16 pixels, the tile size of frames.
 void cast_own(const sim::Scene& scene, const BareRays& rays, unsigned threads,
               std::vector<float>& ranges) {
   constexpr int edge = 16, packets = edge * edge / sim::RayPacket::width;

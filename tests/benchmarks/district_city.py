@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""A procedural town as CityJSON: detached houses and terraces with gabled roofs along streets.
+"""Creates a procedural town as CityJSON: detached and terraced houses with gabled roofs along streets.
 
     district_city.py BUILDINGS [SEED] > town.city.json
 
-The same numbers give the same town. It stands in UTM zone 32 (EPSG:25832), feet at 380 m; every
-twelfth building is called "public" by its attribute "use", the others "house".
+The same arguments create the same town. It is in UTM zone 32 (EPSG:25832), with bases at 380 m. The
+attribute "use" is "public" for each twelfth building and "house" for the others.
 """
 import json
 import math
@@ -13,11 +13,11 @@ import sys
 
 EAST, NORTH, FOOT = 675_000.0, 5_402_000.0, 380.0
 STREET, GARDEN = 18.0, 7.0  # between blocks, and between detached houses
-A_BLOCK = 10  # buildings, in two rows
+A_BLOCK = 10  # buildings per block, in two rows
 
 
 def house(low, size, eaves, ridge):
-    """Corners and faces of a house with its ridge along the longer side."""
+    """Returns the vertices and faces of a house with its ridge along the longer side."""
     (x, y), (width, depth) = low, size
     corners = [(x, y), (x + width, y), (x + width, y + depth), (x, y + depth)]
     points = [(a, b, z) for z in (0.0, eaves) for a, b in corners]
@@ -33,7 +33,7 @@ def house(low, size, eaves, ridge):
 
 
 def block(draw, origin, count):
-    """Houses of a block in two rows; one block in three has a terrace."""
+    """Returns the houses of a block in two rows. One block in three has a terrace."""
     is_terrace = draw.random() < 1 / 3
     found = []
     for row in range(2):

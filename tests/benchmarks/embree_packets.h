@@ -1,5 +1,5 @@
-/// The bare casting of rays by Embree in its fastest configuration that leaves no gaps along edges:
-/// what our own casting is measured against.
+/// Reference for Skycap's ray casting: Embree in its fastest configuration without gaps along
+/// edges.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace skycap::benchmarks {
 
-/// A mesh as Embree holds it, around the middle of its box.
+/// Mesh in an Embree scene, translated so that the centre of its bounding box is the origin.
 class EmbreeMesh {
  public:
   EmbreeMesh(const geometry::Mesh& mesh, unsigned threads)
@@ -49,13 +49,13 @@ class EmbreeMesh {
     rtcReleaseDevice(device_);
   }
 
-  /// The widest packets that this processor casts natively.
+  /// Returns the largest packet width that this processor supports natively.
   int packet_width() const {
     if (rtcGetDeviceProperty(device_, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0) return 16;
     if (rtcGetDeviceProperty(device_, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) != 0) return 8;
     return 4;
   }
-  /// Calls `work` with that width as its template argument.
+  /// Calls `work` with packet_width() as its template argument.
   template <typename Work>
   void with_packet_width(Work&& work) const {
     const int width = packet_width();
@@ -89,7 +89,8 @@ struct EmbreePacketTypes<16> {
   static constexpr auto intersect = rtcIntersect16;
 };
 
-/// Rays being cast: fill `rays.ray`'s origins and directions, call cast(), read `rays.ray.tfar`.
+/// Packet of rays: set the origins and directions in `rays.ray`, call cast(), then read
+/// `rays.ray.tfar`.
 template <int width>
 class EmbreePacket {
  public:

@@ -1,14 +1,17 @@
-/// How the cost of the parts grows with the size of their input: curves, and the exponent that fits
-/// each best (time = c size^exponent, least squares of the logarithms). One thread; processor time
-/// of the process, so that other work on the machine counts little; medians of three.
+/// Benchmark of the run time of each part against its input size. Prints the measured times and the
+/// fitted exponent (time = c size^exponent, least squares of the logarithms). All parts run on one
+/// thread. Times are medians of three runs of process CPU time, which depends little on the load of
+/// the machine.
 ///
 ///   growth_benchmark [--points N, 10000000] [--triangles N, 10000000] [--area N, 32]
 ///
-/// points: returns of a scan of a tower whose area grows with them, kept at a spacing, in rows as a
-/// scanner measures them and shuffled; and balls of neighbours among those kept. triangles: a hilly
-/// sphere made ready for rays and for distances, a frame of 848 x 480 pixels, a million distances
-/// of points near it. area: surveys by SEE++ of spheres whose surface grows, against views; up to N
-/// times that of a sphere of radius 0.5 m.
+/// points: insertion of the returns of a tower scan into a cloud with minimum spacing, in scan
+/// order and shuffled, then neighbour queries in that cloud. The tower's area grows with the number
+/// of returns.
+/// triangles: construction of the ray and distance structures of a hilly sphere, one frame of 848 x
+/// 480 pixels, and a million distance queries near it.
+/// area: surveys of spheres with SEE++ against the number of views. The largest sphere has N times
+/// the surface of a sphere of radius 0.5 m.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -54,10 +57,10 @@ double measure_seconds(Work work) {
   return times[rounds / 2];
 }
 
-/// Costs of one part for inputs of several sizes.
+/// Measured costs of one part for several input sizes.
 class Curve {
  public:
-  /// `work` is how often it is done at every size; zero: as often as the size is large.
+  /// `work` is the number of repetitions at every size. If it is 0, the input size is used.
   Curve(const char* what, const char* unit, std::size_t work = 0)
       : what_(what), unit_(unit), work_(static_cast<double>(work)) {}
 
@@ -95,10 +98,11 @@ class Curve {
   std::vector<Cost> costs_;
 };
 
-constexpr double spacing = 0.0685;  // of the paper's building
+constexpr double spacing = 0.0685;  // density of the building in the paper
 constexpr double radius = 0.15;
 
-/// Returns from a tower 30 m wide, in rows round it; five for each square of the spacing.
+/// Returns scan points of a tower 30 m wide, in rows around it, with five points for each square of
+/// the spacing.
 std::vector<Vector3f> tower(std::size_t count) {
   std::mt19937_64 random(1);
   std::normal_distribution<double> noise(0.0, 0.01);
@@ -181,11 +185,13 @@ void grow_triangles(std::size_t max) {
   distances.print();
 }
 
-/// A sixteenth of a D435's pixels, with as much less density: distances stay as published.
+/// A D435 with a sixteenth of its pixels. The density is reduced by the same factor, so that
+/// distances remain the published ones.
 const geometry::Camera small_camera(geometry::CameraConfig{.width = 212, .height = 120});
 
-/// Of points at the least spacing within the resolution radius. With the published threshold, a
-/// sphere so large that it fills the image has no frontiers: nothing is sparse where images end.
+/// Number of points at the minimum spacing within the resolution radius. With the published
+/// threshold, a large sphere that fills the image would have no frontiers, because its density does
+/// not drop at the image edges.
 constexpr std::size_t half_a_disc = 18;
 
 void grow_views(double max_area) {
@@ -218,7 +224,8 @@ void grow_views(double max_area) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);  // the largest sizes may not end
+  // Flush every line: the largest sizes may run out of memory.
+  std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
   std::size_t points = 10'000'000, triangles = 10'000'000;
   double area = 32.0;
   for (int i = 1; i + 1 < argc; i += 2) {

@@ -1,15 +1,15 @@
-/// A moving laser scanner, all of it, against the bare casting of the same rays by Embree; whole
-/// flights into a LAS file, against the same and against writing the same bytes; and what a scene
-/// costs.
+/// Benchmark of a moving LiDAR. Complete scans are compared with Embree casting the same rays.
+/// Flights written to a LAS file are compared with Embree and with the time to write the same
+/// number of bytes. The construction of scenes is timed as well.
 ///
 ///   lidar_benchmark [--threads N] [--rounds N] [--file FILE.las] [--only turns|flights|scenes]
-///                   [--largest 1]
+/// [--largest 1]
 ///
-/// The platform flies at 10 m/s inside a hilly sphere, over a town of one million triangles 600 m
-/// below, as an airborne scanner does, and over the builtin city. The bare loop has its rays ready
-/// in memory, in packets of the same shape, and keeps only their distances; our own casting of them
-/// is timed against it too, which is what the same bytes on every processor cost. --largest adds
-/// the making of a scene of 30 million triangles.
+/// The platform flies at 10 m/s inside a hilly sphere, 600 m above a town of one million triangles
+/// like an airborne scanner, and above the built-in city. The Embree loop reads precomputed rays
+/// from memory in packets of the same shape, and stores only their distances. Skycap's casting of
+/// these rays is also compared with Embree, because bit-identical results on every processor have a
+/// cost. --largest adds the construction of a scene of 30 million triangles.
 
 #include <algorithm>
 #include <chrono>
@@ -64,7 +64,7 @@ sim::Trajectory flight(double duration) {
        {duration, Eigen::Vector3d(-2.0 + 10.0 * std::min(duration, 0.5), 3.0, 1.0), level}});
 }
 
-/// The rays of a turn, slot by slot, those of a beam together.
+/// Returns the rays of one revolution in slot order, with the rays of each beam next to each other.
 sim::Rays all_rays(const sim::LidarConfig& config, const sim::Trajectory& trajectory,
                    const Eigen::Vector3d& centre, std::uint64_t blocks) {
   const sim::ScanPattern pattern(config);
@@ -114,7 +114,7 @@ void cast_packets(const benchmarks::EmbreeMesh& mesh, const sim::Rays& rays, std
   }
 }
 
-/// Bare casting on all threads, piece by piece.
+/// Casts the rays on all threads, chunk by chunk, without a sensor model.
 class BareLoop {
  public:
   BareLoop(const geometry::Mesh& mesh, const sim::Scene& scene, const sim::LidarConfig& config,
@@ -127,7 +127,7 @@ class BareLoop {
         ranges_(rays_.origin[0].size()) {}
 
   std::size_t rays() const { return ranges_.size(); }
-  /// By Embree.
+  /// Casts with Embree.
   void operator()() {
     in_chunks([&](std::size_t begin, std::size_t end) {
       mesh_.with_packet_width([&]<int width>() {
@@ -135,7 +135,7 @@ class BareLoop {
       });
     });
   }
-  /// By our own kernels, with the normals and triangles that returns are made of.
+  /// Casts with Skycap's kernels, including the normals and triangles that returns need.
   void cast_own() {
     in_chunks([&](std::size_t begin, std::size_t end) {
       constexpr int width = sim::RayPacket::width;
@@ -194,7 +194,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Megabytes a second at which the disk takes as many bytes in blocks of the size of a chunk.
+/// Returns the write speed of the disk [MB/s] for the same number of bytes in chunk-sized blocks.
 double raw_write_speed(const std::string& path, std::uintmax_t bytes) {
   const std::vector<char> block(1 << 20, 'x');
   const auto start = std::chrono::steady_clock::now();
@@ -210,7 +210,7 @@ double raw_write_speed(const std::string& path, std::uintmax_t bytes) {
   return 1e-6 * static_cast<double>(bytes) / time;
 }
 
-/// What is flown over.
+/// Terrain below the flight.
 struct Ground {
   Ground(geometry::Mesh surface, unsigned threads)
       : mesh(std::move(surface)), scene(mesh, threads) {}
@@ -218,7 +218,7 @@ struct Ground {
   sim::Scene scene;
 };
 
-/// Whole flights of `turns` turns, and the bare casting of one turn's rays.
+/// Times flights of `turns` revolutions and the ray casting of one revolution.
 void fly_into_file(const Ground& ground, sim::LidarConfig config, const Eigen::Vector3d& from,
                    int turns, int rings, unsigned threads, int rounds, const std::string& path) {
   config.beam.rings = rings;
@@ -266,7 +266,8 @@ void fly_both(const Ground& ground, const sim::LidarConfig& config, const Eigen:
   fly_into_file(ground, config, from, 1, 2, threads, rounds, path);
 }
 
-/// Level flights over built-up ground: from so high that one turn sees all of it, and from 60 m.
+/// Times level flights over built-up terrain, from an altitude at which one revolution sees all of
+/// it, and from 60 m.
 void fly_over_towns(unsigned threads, int rounds, const std::string& path) {
   sim::LidarConfig high = spinner(64, 2048), low = high;
   high.max_range = 1000.0;

@@ -1,14 +1,14 @@
-/// A survey on a socket: how long `skycap serve` takes from a depth image to the next view and the
-/// way there, and how its memory grows.
+/// Benchmark of a survey through a socket. Measures the time that `skycap serve` needs from a depth
+/// image to the next view and its path, and the growth of its memory.
 ///
 ///   live_benchmark SKYCAP [--width 1600] [--height 1200] [--density 60] [--threads 1] [--circles
 ///   N]
 ///
-/// A box of 10 x 8 x 10 m stands on the ground and is surveyed by a vehicle that measures each view
-/// it is sent to, with 3 mm of noise, until the survey ends. With --circles it is carried by hand:
-/// a mission without a vehicle, and when nothing is asked for any more, the scans go on in circles
-/// round the box until there are N. Wall-clock time is the client's, from the message's first byte
-/// to the answer's last; processor time is the server's for that.
+/// A box of 10 x 8 x 10 m stands on the ground. A vehicle measures each requested view with 3 mm
+/// noise until the survey ends. With --circles, the mission has no vehicle and the sensor is
+/// hand-held. After the last requested view, scans continue in circles around the box until there
+/// are N scans. Wall-clock time is measured in the client, from the first byte of the message to
+/// the last byte of the answer. CPU time is the server's time in that interval.
 #include <algorithm>
 #include <cmath>
 #include <csignal>
@@ -41,7 +41,7 @@ constexpr double horizontal_fov_deg = 60.0, vertical_fov_deg = 46.8, farthest = 
 struct Options {
   std::string program;
   int width = 1600, height = 1200, density = 60, threads = 1;
-  int circles = 0;  ///< scans until the end, without a vehicle
+  int circles = 0;  ///< total number of hand-held scans; 0 for a vehicle
 };
 
 std::string make_mission(const Options& options) {
@@ -70,7 +70,8 @@ geometry::Camera make_camera(const Options& options) {
   return geometry::Camera(config);
 }
 
-/// Along the optical axis, to the box or the ground; infinite where there is neither.
+/// Returns the depth along the optical axis to the box or the ground. Infinite if the ray hits
+/// neither.
 double compute_depth(const Vector3d& sensor, const Vector3d& ray) {
   const Vector3d low(-5.0, -4.0, 0.0), high(5.0, 4.0, 10.0);
   const Vector3d a = (low - sensor).cwiseQuotient(ray), b = (high - sensor).cwiseQuotient(ray);
@@ -79,7 +80,7 @@ double compute_depth(const Vector3d& sensor, const Vector3d& ray) {
   return ray.z() < 0.0 ? -sensor.z() / ray.z() : INFINITY;
 }
 
-/// The depth image from a pose, row by row.
+/// Returns the depth image from a pose, row by row.
 std::vector<std::uint16_t> measure(const geometry::Camera& camera, const Eigen::Isometry3d& pose,
                                    std::mt19937& random) {
   std::normal_distribution<double> noise(0.0, 0.003);
@@ -94,7 +95,7 @@ std::vector<std::uint16_t> measure(const geometry::Camera& camera, const Eigen::
   return image;
 }
 
-/// `skycap serve` as a process of its own, from its address on to its end.
+/// Runs `skycap serve` in a separate process, from reading its address to its exit.
 class Server {
  public:
   Server(const Options& options, const std::filesystem::path& folder)
@@ -114,7 +115,7 @@ class Server {
   const std::string& address() const { return address_; }
   double processor_time() const { return seconds_on(clock_); }
 
-  /// What is in memory, and what was at most [MiB].
+  /// Returns the current or (with another key) the peak memory use [MiB].
   int memory(const std::string& key = "VmRSS:") const {
     std::ifstream status("/proc/" + std::to_string(pid_) + "/status");
     std::string word;
@@ -156,7 +157,7 @@ skycap_live::Pose to_rows(const Eigen::Isometry3d& pose) {
   return rows;
 }
 
-/// On a circle round the box, each time at another place and height.
+/// Returns a pose on a circle around the box. The angle and the height vary with `number`.
 Eigen::Isometry3d place_on_circle(int number) {
   const double angle = 2.4 * number;
   const Vector3d position(18.0 * std::cos(angle), 18.0 * std::sin(angle), 4.0 + number % 8);
@@ -186,7 +187,7 @@ void survey(const Options& options) {
     const nlohmann::json& view = answer.at("view");
     const Eigen::Isometry3d pose = view.is_null() ? place_on_circle(scans) : make_pose(view);
     const std::vector<std::uint16_t> image = measure(camera, pose, random);
-    client.next();  // the page of the scan before is written
+    client.next();  // wait until the HTML report of the previous scan has been written
     const double processor = server.processor_time(), wall = seconds_on(CLOCK_MONOTONIC);
     const std::string text =
         client.add_depth(image, options.width, options.height, unit, to_rows(pose));

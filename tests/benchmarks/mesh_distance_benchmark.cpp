@@ -1,5 +1,5 @@
-/// Distances of scanned points from a mesh, against CGAL's tree and Embree's point queries: a noisy
-/// frame of a town, in its own order and shuffled, on one core.
+/// Benchmark of point-to-mesh distances against the CGAL tree and Embree point queries. The points
+/// are a noisy frame of a town, in scan order and shuffled. It runs on one core.
 ///
 ///   mesh_distance_benchmark [triangles, 500000] [rounds, 3]
 #include <algorithm>
@@ -25,7 +25,8 @@ namespace {
 
 using namespace skycap;
 
-/// Of a point and one triangle, in Embree's precision. Its users have to bring that themselves.
+/// Returns the squared distance between a point and a triangle in single precision. Embree point
+/// queries require this function from the caller.
 float squared_distance(const Eigen::Vector3f& p, const Eigen::Vector3f& a, const Eigen::Vector3f& b,
                        const Eigen::Vector3f& c) {
   const Eigen::Vector3f normal = (b - a).cross(c - a);
@@ -73,7 +74,7 @@ double embree_distance(const benchmarks::EmbreeMesh& embree, const geometry::Mes
   return std::sqrt(query.nearest);
 }
 
-/// A frame from above the town, at about a metre's spacing of pixels in the distance.
+/// Returns a frame from above the town with about 1 m between neighbouring points at the far end.
 std::vector<Eigen::Vector3f> make_frame(const geometry::Mesh& mesh) {
   sim::DepthCameraConfig config = sim::high_resolution();
   config.camera.width = 800;

@@ -1,12 +1,11 @@
-// What it costs not to know the scene: the missions that flown surveys leave, chosen anew from what
-// they measured, beside those of the same search that knows the true surface and the free space
-// about it, for the same wanted coverage.
+// Benchmark of the cost of an unknown scene. Missions replanned from survey measurements are
+// compared with missions that the same search plans with the true surface and the surrounding free
+// space. Both have the same coverage target.
 //
-//   minutes_benchmark [MISSION] [--seeds 3] [--set KEY=VALUE]...
+// minutes_benchmark [MISSION] [--seeds 3] [--set KEY=VALUE]...
 //
-// The true surface is told to the planner by scans of views that cover the scene for one who knows
-// it, besides those of the survey. Both missions are flown again in simulation. Without a mission
-// it is a teapot of 20 m.
+// The oracle obtains the true surface from the scans of the survey and of additional views that
+// cover the scene. Both missions are simulated. The default mission is a teapot of 20 m.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -35,8 +34,8 @@ namespace {
 using namespace skycap;
 using namespace skycap::missions;
 
-/// The survey as if it had seen everything: its views and legs, with the surface and the space that
-/// one measures who knows where to look.
+/// Returns the survey record of an oracle: the views and legs of the survey, with the surface and
+/// free space measured from views that cover the scene.
 session::SurveyRecord all_knowing(const evaluation::SimulationOptions& options,
                                   const evaluation::SurveyScene& scene,
                                   const session::SurveyRecord& record, unsigned threads) {

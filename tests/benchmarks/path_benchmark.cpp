@@ -1,7 +1,7 @@
-// Paths between random places in a city block and round a building the size of the Radcliffe
-// Camera: the grid engine against OMPL's BIT*, at 2 m clearance.
+// Benchmark of path planning between random positions in a city block and around a building of the
+// size of the Radcliffe Camera. The grid planner is compared with OMPL's BIT*, at 2 m clearance.
 //
-//   path_benchmark [paths in each, 30]
+// path_benchmark [paths in each, 30]
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -18,7 +18,8 @@ namespace {
 using namespace skycap::flight;
 using Eigen::Vector3d;
 
-/// Processor time: both engines run on one thread, and the machine may be shared.
+/// Returns the CPU time of `work` [s], because both planners run on one thread and the machine may
+/// be shared.
 double seconds(auto&& work) {
   const std::clock_t start = std::clock();
   work();
@@ -35,7 +36,8 @@ void run(const char* name, const Obstacles& obstacles, const Eigen::AlignedBox3d
   while (grid_times.size() < count) {
     const Vector3d from = scenes::point_in(random, around), to = scenes::point_in(random, around);
     if (!space.is_free({from, from}, clearance) || !space.is_free({to, to}, clearance)) continue;
-    if (space.continues_free({from, to}, clearance)) continue;  // the straight line is no task
+    // Skip queries that the straight line solves.
+    if (space.continues_free({from, to}, clearance)) continue;
     Path grid, sampled;
     grid_times.push_back(seconds([&] { grid = finder.find(from, to); }));
     sampling_times.push_back(

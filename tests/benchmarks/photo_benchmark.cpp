@@ -178,7 +178,7 @@ class Bench {
     return hut;
   }
 
-  /// Samples of exposed surface, with another seed than the planner's.
+  /// Samples the exposed surface with a different seed from the planner's.
   void sample() {
     const TargetSamples samples =
         sample_target(target_, sight_lines_,

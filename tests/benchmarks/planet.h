@@ -1,4 +1,4 @@
-/// A procedural mesh of any size for benchmarks: a sphere of radius 20 m with hills on it.
+/// Procedural mesh of any size for benchmarks: a hilly sphere of radius 20 m.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,8 @@
 
 namespace skycap::benchmarks {
 
-/// Height [m] over the sphere in the direction `n`: seven octaves of waves, each half the last.
+/// Returns the height [m] above the sphere in the direction `n`: seven octaves of waves, each with
+/// half the amplitude of the previous one.
 inline double hill(const Eigen::Vector3d& n) {
   double height = 0.0, size = 1.0;
   Eigen::Vector3d p = 3.0 * n;
@@ -21,7 +22,7 @@ inline double hill(const Eigen::Vector3d& n) {
   return height;
 }
 
-/// About `triangles` triangles: the six faces of a cube, each a grid, blown up to a sphere.
+/// Returns a mesh of about `triangles` triangles: the six grids of a cube, projected to a sphere.
 inline geometry::Mesh planet(std::size_t triangles) {
   const auto cells =
       static_cast<std::uint32_t>(std::lround(std::sqrt(static_cast<double>(triangles) / 12.0)));

@@ -1,9 +1,10 @@
-/// Processor time: the machine may be busy with other things.
+/// CPU time, which depends less on the load of the machine than wall-clock time.
 #pragma once
 
 #include <ctime>
 
-/// Of CLOCK_THREAD_CPUTIME_ID, this thread, or CLOCK_PROCESS_CPUTIME_ID, all of its program [s].
+/// Returns the CPU time [s] of this thread (CLOCK_THREAD_CPUTIME_ID) or of the whole process
+/// (CLOCK_PROCESS_CPUTIME_ID).
 inline double seconds_on(clockid_t clock) {
   timespec time{};
   clock_gettime(clock, &time);

@@ -1,5 +1,8 @@
-"""What Python costs: importing the module, and two million points on their way into a planner and
-out again. Medians; PYTHONPATH=build/release/python python3 tests/benchmarks/python_benchmark.py"""
+"""Benchmark of the Python interface: import of the module, and transfer of two million points to a
+planner and back. Prints medians.
+
+    PYTHONPATH=build/release/python python3 tests/benchmarks/python_benchmark.py
+"""
 
 import statistics
 import subprocess
@@ -30,7 +33,7 @@ def seconds_of(action):
 
 
 def import_time():
-    """Of a process that imports the module, less one that does not."""
+    """Measures a process that imports the module, minus one that does not."""
     def run(script):
         return statistics.median(
             seconds_of(lambda: subprocess.run([sys.executable, "-c", script], check=True))
@@ -39,7 +42,7 @@ def import_time():
 
 
 def points_in(mission):
-    """Of a call that takes a scan in, what is not the planner's own work."""
+    """Measures the overhead of a call that adds a scan, without the planner's own work."""
     camera = mission.camera
     rays = camera.rays().reshape(-1, 3)
     points = (5 * rays).astype(np.float32)  # a wall, 5 m away
@@ -53,7 +56,7 @@ def points_in(mission):
 
 
 def points_out():
-    """From a planner's cloud, which keeps nearly all of them, to an array."""
+    """Measures the conversion of a planner's cloud, which keeps nearly all points, to an array."""
     mission = skycap.Mission.parse(MISSION.replace("density: 4000", "density: 1e7"), "wall.yaml")
     planner = skycap.Planner(mission)
     points = (5 * mission.camera.rays().reshape(-1, 3)).astype(np.float32)

@@ -1,11 +1,11 @@
-/// The page of a survey: how long it takes to make from a package, beside the reading of its cloud
-/// alone, and how large it is.
+/// Benchmark of the HTML report of a survey: the time to create it from a package, the time to read
+/// the cloud alone, and the file size.
 ///
 ///   report_benchmark [points, 1000000] [rounds, 3]
 ///
-/// A small survey of a teapot 10 m long is flown; its cloud is then replaced by so many points of
-/// the same surface, with noise, each as if from one of the views that are nearest to it. On one
-/// core: taskset -c 0 report_benchmark
+/// A small survey of a 10 m long teapot is simulated. Its cloud is then replaced by noisy points of
+/// the same surface, each assigned to one of the nearest views. On one core: taskset -c 0
+/// report_benchmark
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -33,7 +33,7 @@ flight: {vehicle: m350_rtk, clearance: 2.0, unknown_box: {min: [-7, -7, 0], max:
 limits: {max_views: 12}
 )";
 
-/// One of the three views that are nearest to a place.
+/// Returns a random one of the three views nearest to `position`.
 std::uint32_t view_near(const Eigen::Vector3f& position, const std::vector<geometry::View>& views,
                         std::mt19937_64& random) {
   std::vector<std::uint32_t> order(views.size());
@@ -46,7 +46,7 @@ std::uint32_t view_near(const Eigen::Vector3f& position, const std::vector<geome
   return order[random() % near];
 }
 
-/// So many points of the mission's surface in place of the package's cloud.
+/// Replaces the cloud of the package by `points` points of the mission's surface.
 void replace_cloud(const std::filesystem::path& folder, std::size_t points) {
   const missions::package::PackageSummary survey =
       missions::package::read_package_summary(folder, {});

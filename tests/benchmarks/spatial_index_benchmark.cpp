@@ -1,6 +1,6 @@
-/// What each structure behind SpatialIndex earns: the same queries with our grid, CGAL's kd-tree
-/// (the forest's building block), nanoflann and PCL's octree, over points on a building-sized shell
-/// kept at SEE's spacing.
+/// Benchmark of the structures behind SpatialIndex. The same queries run on Skycap's grid, CGAL's
+/// kd-tree (used in the forest), nanoflann and PCL's octree. The points form a building-sized shell
+/// with SEE's spacing.
 ///
 ///   spatial_index_benchmark [points of the scan, 4000000]
 #include <algorithm>
@@ -32,10 +32,10 @@ using skycap::benchmarks::interleaved_medians;
 using skycap::geometry::Neighbour;
 using skycap::geometry::PointGrid;
 
-constexpr double radius = 0.15, spacing = 0.0685;  // r and epsilon of the paper's building
+constexpr double radius = 0.15, spacing = 0.0685;  // r and epsilon of the building in the paper
 constexpr int rounds = 5;
 
-/// Random points on a cylinder 40 m high and 30 m wide, with 1 cm of noise.
+/// Returns random points on a cylinder 40 m high and 30 m wide, with 1 cm of noise.
 std::vector<Vector3f> shell(std::size_t count) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<float> uniform(0.0F, 1.0F);
@@ -48,7 +48,7 @@ std::vector<Vector3f> shell(std::size_t count) {
   return points;
 }
 
-/// The same points row by row of 3 cm, each row from its one end to the other.
+/// Sorts the points into rows 3 cm high, each in the order of a scan line.
 std::vector<Vector3f> in_rows(std::vector<Vector3f> points) {
   const auto sample_at = [](const Vector3f& p) {
     return std::pair(std::floor(p.z() / 0.03F), std::atan2(p.y(), p.x()));
@@ -57,7 +57,7 @@ std::vector<Vector3f> in_rows(std::vector<Vector3f> points) {
   return points;
 }
 
-/// nanoflann's view of a vector of points.
+/// Adapts a vector of points to nanoflann.
 struct PointsForNanoflann {
   const std::vector<Vector3f>& points;
   std::size_t kdtree_get_point_count() const { return points.size(); }
@@ -111,7 +111,7 @@ int main(int argc, char** argv) {
   octree.setInputCloud(pcl_points);
   octree.addPointsFromInputCloud();
 
-  // All neighbours within the radius. The counts of all four must agree.
+  // All neighbours within the radius. The counts of the four structures must be equal.
   std::size_t found_by_grid = 0, found_by_other = 0;
   const auto ask_grid = [&] {
     std::vector<Neighbour> found;
@@ -156,7 +156,7 @@ int main(int argc, char** argv) {
     }
   });
 
-  // A large ball: here the kd-tree behind the forest earns its place.
+  // Large radius, for which the kd-tree in the forest pays off.
   const std::vector<Vector3f> few(queries.begin(),
                                   queries.begin() + std::min<std::size_t>(300, queries.size()));
   const auto large_with_grid = [&] {
@@ -180,8 +180,8 @@ int main(int argc, char** argv) {
                             }),
         few.size());
 
-  // Growing the cloud by one scan: our insertion at the spacing beside a copy of its points, as
-  // they came above, at random, and in rows, as scanners measure them.
+  // Insertion of one scan at the spacing, compared with a copy of the points. The points arrive in
+  // the original order, at random, and in rows like those of a scanner.
   const auto compare_insertion = [](const char* what, const std::vector<Vector3f>& returns) {
     const auto grow = [&] {
       skycap::geometry::DensityMap growing(

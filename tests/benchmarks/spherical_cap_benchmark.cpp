@@ -1,12 +1,12 @@
-// The clearest direction among n occluded ones: our methods against the obvious alternatives.
-//   GLOBAL  against the convex hull of all directions (CGAL), whose facet nearest to the origin is
-//           the same answer; the hull is left out above 100,000, where it takes many seconds
-//   LOCAL   against the paper's nonlinear program (NLopt), whose cosine should be no smaller
-// The sets look like a frontier's surroundings: directions all over the sphere but for some holes.
-// The last table has no holes: nothing is clear, and any gap between directions might be the
-// largest.
+// Benchmark of the least occluded direction among n occluded ones, against the obvious
+// alternatives.
+// GLOBAL  against the convex hull of all directions (CGAL), whose facet nearest to the origin gives
+// the same result. The hull is skipped above 100,000 directions, where it takes many seconds.
+// LOCAL   against the paper's nonlinear program (NLopt), whose cosine should not be smaller.
+// The sets resemble the surroundings of a frontier: directions all over the sphere except for some
+// holes. The last table has no holes, so that any gap between directions might be the largest.
 //
-//   spherical_cap_benchmark [most directions, 300000]
+// spherical_cap_benchmark [most directions, 300000]
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

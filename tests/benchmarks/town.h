@@ -1,5 +1,5 @@
-/// A procedural town for benchmarks: 240 m of rolling ground with a hundred blocks of rough walls
-/// and roofs, one sheet without seams. Airborne scanners are compared on scenes of this kind.
+/// Procedural town for benchmarks: 240 m of rolling terrain with a hundred blocks of rough walls
+/// and roofs, in one seamless mesh. Airborne scanners are compared on such scenes.
 #pragma once
 
 #include <cmath>
@@ -10,8 +10,8 @@
 
 namespace skycap::benchmarks {
 
-/// Height [m] of the town at a place of its square of 240 m: ground of five octaves of waves, and
-/// on each cell of 24 m a block, of 8 to 40 m by its cell, whose sides are 12 to 18 m long.
+/// Returns the height [m] of the town at a position of its 240 m square. The terrain has five
+/// octaves of waves. Each cell of 24 m contains a block 8 to 40 m high with sides of 12 to 18 m.
 inline double town_height(double x, double y) {
   double ground = 0.0, size = 2.0, u = 0.03 * x, v = 0.03 * y;
   for (int octave = 0; octave < 5; ++octave, size *= 0.5, u = 2.1 * u + 1.7, v = 2.1 * v + 0.9) {
@@ -26,7 +26,7 @@ inline double town_height(double x, double y) {
   return ground + rough + (is_block ? 8.0 + 32.0 * chance : 0.0);
 }
 
-/// About `triangles` triangles, centred at x = y = 0.
+/// Returns a mesh of about `triangles` triangles, centred at x = y = 0.
 inline geometry::Mesh town(std::size_t triangles) {
   const auto cells =
       static_cast<std::uint32_t>(std::lround(std::sqrt(0.5 * static_cast<double>(triangles))));

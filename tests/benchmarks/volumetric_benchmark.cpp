@@ -1,9 +1,10 @@
-// One step of a volumetric planner, "insert a cloud and score 130 candidates", in one thread: ours
-// and the twin on OctoMap (tests/survey/octomap_planning.h) in turn, for each gain.
+// Benchmark of one step of a volumetric planner, "insert a cloud and score 130 candidates", on one
+// thread. Skycap and the reference on OctoMap (tests/survey/octomap_planning.h) run alternately for
+// each gain.
 //
-//   volumetric_benchmark [object|building] [clouds before, 10] [candidates of the twin, 10]
+// volumetric_benchmark [object|building] [clouds before, 10] [candidates of the twin, 10]
 //
-// The twin scores only some of the candidates; its time is scaled to 130.
+// The reference scores only some of the candidates; its time is scaled to 130.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>

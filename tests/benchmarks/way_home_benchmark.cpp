@@ -1,10 +1,10 @@
-// What proven ways home cost: the route of a mission package planned with and without them, in the
-// same measured space and order of views; how much longer the mission is, and how long planning
-// takes.
+// Benchmark of the cost of verified return paths. The route of a mission package is planned with
+// and without return paths, in the same measured space and view order. Prints the additional
+// mission time and the planning time.
 //
-//   way_home_benchmark [PACKAGE... ] [--rounds 3]
+// way_home_benchmark [PACKAGE... ] [--rounds 3]
 //
-// Without a package it surveys a teapot of 20 m first.
+// Without a package, a 20 m teapot is surveyed first.
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -39,7 +39,8 @@ flight::Route plan(const package::PackagedSurvey& survey, bool has_returns) {
                     options);
 }
 
-/// Only what both visit can be compared: views without a way home are left out by the one alone.
+/// Keeps only the views that both routes visit, because views without a return path are skipped in
+/// one of them.
 void keep_route_views(const flight::Route& route, package::PackagedSurvey& survey) {
   std::vector<bool> is_kept(survey.views.size(), false);
   for (const flight::CapturePoint& capture_point : route.capture_points)
@@ -48,7 +49,7 @@ void keep_route_views(const flight::Route& route, package::PackagedSurvey& surve
   for (std::size_t i = 0; i < survey.views.size(); ++i) {
     if (!is_kept[i]) continue;
     survey.views[kept] = survey.views[i];
-    survey.paths[kept++].clear();  // it led from a view that may be left out
+    survey.paths[kept++].clear();  // the path starts at a view that may be skipped
   }
   survey.views.resize(kept);
   survey.paths.resize(kept);
@@ -70,7 +71,7 @@ void measure(const std::filesystem::path& folder, int rounds) {
       bare_time);
 }
 
-/// The package of a small survey.
+/// Creates the package of a small survey.
 void survey_teapot(const std::filesystem::path& mission, const std::filesystem::path& package) {
   std::ostringstream out, err;
   cli::run_command_line(

@@ -1,6 +1,6 @@
-"""Skycap's pages in Debian's Chromium, for the tests beside this file.
+"""Opens Skycap's reports in Debian's Chromium, for the tests in this folder.
 
-PROGRAM is the program that makes the pages. Exit code 77: there is no browser to test with.
+PROGRAM is the program that creates the reports. Exit code 77: no browser is installed.
 """
 
 import json
@@ -22,7 +22,7 @@ except ImportError:
     sys.exit(77)
 
 CHROMIUM, DRIVER = "/usr/bin/chromium", "/usr/bin/chromedriver"
-# Without these Chromium has no WebGL on a machine without a graphics card.
+# Chromium requires these flags for WebGL on a machine without a graphics card.
 FLAGS = ["--headless=new", "--no-sandbox", "--use-angle=swiftshader",
          "--enable-unsafe-swiftshader", "--hide-scrollbars", "--disable-dev-shm-usage"]
 HOSTILE = "</script><img src=x onerror=document.title=1><!-- \"'\n" + "x" * 10_000
@@ -42,7 +42,7 @@ limits: {max_views: 12}
 
 def run(*arguments):
     done = subprocess.run([os.environ["PROGRAM"], *arguments], capture_output=True, text=True)
-    if done.returncode not in (0, 1, 10):  # done, no, and nowhere to measure next
+    if done.returncode not in (0, 1, 10):  # success, negative result, no next view
         raise RuntimeError(f"skycap {' '.join(arguments)}: {done.stderr}")
     return done
 
@@ -55,7 +55,7 @@ def plan(folder, mission, *options):
 
 
 def write_scaled(results, views, points):
-    """A package's summary and cloud, multiplied: views and points again and again, a little apart."""
+    """Multiplies the views and points of a package's summary and cloud, with small offsets."""
     summary = json.loads((results / "summary.json").read_text())
     first = summary["per_view"]
     summary["per_view"] = [{**first[i % len(first)], "view": i} for i in range(views)]
@@ -71,7 +71,7 @@ def write_scaled(results, views, points):
     shifted = []
     for copy in range(copies):
         block = bytearray(body)
-        for i in range(0, len(block), stride):  # in x and y alone, by less than the points are apart
+        for i in range(0, len(block), stride):  # in x and y only, by less than the point spacing
             x, y = struct.unpack_from("<2f", block, i)
             struct.pack_into("<2f", block, i, x + 0.003 * (copy % 17), y + 0.003 * (copy // 17))
         shifted.append(bytes(block))
@@ -81,7 +81,7 @@ def write_scaled(results, views, points):
 
 
 def column_of_ply(path, first, form):
-    """Of a binary PLY of ours the values of each vertex from the property `first` on."""
+    """Returns values of each vertex in a binary PLY file, starting at the property `first`."""
     content = path.read_bytes()
     header, body = content.split(b"end_header\n", 1)
     sizes = {b"float": 4, b"uint": 4, b"uchar": 1}
@@ -116,7 +116,7 @@ class Page:
         options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
         self.browser = webdriver.Chrome(service=Service(DRIVER), options=options)
         self.browser.set_script_timeout(300)
-        if width < 500:  # no headless window is as narrow
+        if width < 500:  # headless windows have a minimum width
             self.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {
                 "width": width, "height": height, "deviceScaleFactor": 2, "mobile": True})
         self.browser.get(pathlib.Path(file).as_uri())
@@ -155,7 +155,7 @@ class Page:
                 if entry["method"] == "Network.requestWillBeSent"]
 
     def pixels(self):
-        """How many colours the picture holds, and the renderer's error."""
+        """Returns the number of colours in the view, and the renderer's error."""
         return self.browser.execute_script("""
             const viewer = window.shown.panel.viewer, gl = viewer.renderer.getContext();
             viewer.draw();
@@ -170,11 +170,11 @@ class Page:
             return { colours: colours.size, most, error: gl.getError() };""")
 
     def click(self, selector):
-        """Wherever it is: what is drawn over it or out of sight takes no part."""
+        """Clicks the element, even if it is covered or outside the window."""
         self.browser.execute_script("document.querySelector(arguments[0]).click()", selector)
 
     def click_canvas(self, x, y):
-        """As a mouse does, at a place on the 3-D view."""
+        """Clicks with the mouse at a position in the 3-D view."""
         left, top = self.browser.execute_script("""
             const { canvas } = window.shown.panel;
             canvas.scrollIntoView({ block: "center" });
@@ -196,7 +196,8 @@ SCALES = {"share": 100, "millimetres": 1000, "minutes": 1 / 60}
 
 
 def check_figures(test, page, summary, least):
-    """Every figure of the page that says where it is from is the summary's, as far as it is shown."""
+    """Checks that each labelled value on the page equals that of the summary, to the shown
+    precision."""
     figures = page.get("""Array.from(document.querySelectorAll("[data-figure]"), (e) =>
         [e.dataset.figure, e.dataset.form, e.textContent])""")
     test.assertGreater(len(figures), least)
@@ -217,11 +218,11 @@ def check_figures(test, page, summary, least):
 
 
 def main():
-    """Runs the tests of the file that calls this."""
+    """Runs the tests of the calling file."""
     for program, package in ((CHROMIUM, "chromium"), (DRIVER, "chromium-driver")):
         if not os.path.exists(program):
             print(f"skipped: {program} is missing; install {package}")
             sys.exit(77)
-    os.environ.pop("DISPLAY", None)  # skycap view opens nothing here
+    os.environ.pop("DISPLAY", None)  # prevents skycap view from opening a browser
     os.environ.pop("WAYLAND_DISPLAY", None)
     unittest.main(verbosity=2)

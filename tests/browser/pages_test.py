@@ -1,4 +1,4 @@
-"""Pages with little, much or foreign things in them, and those of other verbs."""
+"""Tests reports with little, much or foreign content, and those of other commands."""
 
 import array
 import collections
@@ -18,7 +18,7 @@ from chromium import (HOSTILE, MISSION, JavascriptException, Page, check_figures
 
 
 class OtherPagesTest(unittest.TestCase):
-    """Pages with little or nothing in them, and those of skycap view."""
+    """Reports with little or no content, and those of skycap view."""
 
     def setUp(self):
         self.temporary = tempfile.TemporaryDirectory()
@@ -59,7 +59,8 @@ class OtherPagesTest(unittest.TestCase):
         self.assertIn("before", self.shows(self.folder / "m.html"))
 
     def test_prior_data(self):
-        """Can be hidden; what is too large is not drawn, and the page says so."""
+        """Prior data can be hidden. Data that are too large are not drawn, with a note on the
+        page."""
         (self.folder / "few.obj").write_text("v 20 0 0\nv 21 0 0\nv 20 1 0\nv 20 0 9\n"
                                              "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n")
         side = 101  # 20,000 triangles are drawn
@@ -97,7 +98,7 @@ class OtherPagesTest(unittest.TestCase):
             page.close()
 
     def test_a_cloud_of_one_point(self):
-        """Which has no spacing, and so no density."""
+        """A cloud of one point has no spacing and therefore no density."""
         cloud = self.folder / "one.xyz"
         cloud.write_text("1 2 3\n")
         run("view", str(cloud))
@@ -130,7 +131,7 @@ class OtherPagesTest(unittest.TestCase):
                 page.close()
 
     def test_more_points_than_a_page_shows(self):
-        """Three million; POINTS=10000000 in the environment for more."""
+        """Uses three million points. POINTS=10000000 in the environment sets another number."""
         count = 100_000
         layers = int(os.environ.get("POINTS", 3_000_000)) // count
         one = array.array("f", [0.0]) * (3 * count)
@@ -188,7 +189,7 @@ class OtherPagesTest(unittest.TestCase):
         self.assertIn("incomplete: interrupted", self.shows(results / "report.html"))
 
     def test_many_views_and_points(self):
-        """Of 2 million points the page shows one; 200 views can be replayed."""
+        """The page shows one of 2 million points. 200 views can be replayed."""
         results = plan(self.folder, MISSION % "many")
         write_scaled(results, 200, 2_000_000)
         run("report", str(results))
@@ -216,7 +217,7 @@ class OtherPagesTest(unittest.TestCase):
         run("benchmark", str(mission), "--planners", "see,see++,skycap", "--trials", "2", *options)
         for name, data, charts in (("trials", "trials", 4), ("benchmark", "results", 9)):
             summary = json.loads((out / f"{data}.json").read_text())
-            # A name in a file of results may come from anywhere.
+            # Names in result files are not trusted.
             cell = summary["results"][0] if "results" in summary else summary
             cell["mission"] = HOSTILE
             (out / f"{data}.json").write_text(json.dumps(summary))
@@ -269,9 +270,9 @@ class OtherPagesTest(unittest.TestCase):
             page.close()
 
     def test_scans(self):
-        """A laser's and a camera's, whose navigation is wrong by some 0.2 m."""
+        """Scans of a laser and a camera with navigation errors of about 0.2 m."""
         mission = self.folder / "mission.yaml"
-        # The carrier goes round to the left: a camera has to look there.
+        # The platform flies around the scene with its left side facing it, so the camera must look left.
         for sensor, turned in (("velodyne_vlp16", 0), ("see_d435", 90)):
             out = self.folder / sensor
             mission.write_text("""
@@ -306,8 +307,8 @@ scan: {sensor: %s, frame_period: 1.0, navigation: {horizontal_sigma: 0.2},
                 page.close()
 
     def test_a_survey_that_goes_on(self):
-        """Its page is read again when the next scan is in, and stays as it was looked at, until the
-        survey has ended by itself and is finished."""
+        """The page of a running survey reloads after the next scan and keeps the user's view, until
+        the survey is finished."""
         mission = self.folder / "mission.yaml"
         mission.write_text("".join(line for line in (MISSION % "live").splitlines(True)
                                    if not line.startswith("flight:"))
@@ -316,7 +317,7 @@ scan: {sensor: %s, frame_period: 1.0, navigation: {horizontal_sigma: 0.2},
         call = ["next", str(mission), "--survey", str(survey), "--quiet", "--json"]
         answer = json.loads(run(*call).stdout)
         page = None
-        # What keeps the page from being read again, and what ends that.
+        # Actions that prevent a reload, and actions that allow it again.
         follow = "document.getElementById('follow')"
         replay = "document.getElementById('replay')"
         slide = "(%s.value = '%d', %s.dispatchEvent(new Event('input')))"
@@ -328,7 +329,7 @@ scan: {sensor: %s, frame_period: 1.0, navigation: {horizontal_sigma: 0.2},
                     self.wait_for(page, at_rest[number][0])
                 self.measure(call, answer["view"], number)
                 if page is None:
-                    for verb in ("report", "view"):  # which lead to it
+                    for verb in ("report", "view"):  # these commands link to it
                         self.assertIn(str(survey / "report.html"), run(verb, str(survey)).stdout)
                     page = Page(survey / "report.html")
                     self.assertIsNone(page.failure)
@@ -340,7 +341,7 @@ scan: {sensor: %s, frame_period: 1.0, navigation: {horizontal_sigma: 0.2},
                         delete panel.viewer.layers.views;  // as if it came later""")
                     turned = page.get("window.shown.panel.viewer.camera.position.toArray()")
                 if number in at_rest:
-                    time.sleep(2 * 5)  # twice the page's reading_period
+                    time.sleep(2 * 5)  # twice the page's reload period
                     self.assertIn(f"{number} scans so far", page.get("document.body.innerText"))
                     page.browser.execute_script(at_rest[number][1])
                 self.wait_for(page, f"document.body.innerText.includes('{number + 1} scan')")
@@ -361,7 +362,8 @@ scan: {sensor: %s, frame_period: 1.0, navigation: {horizontal_sigma: 0.2},
                 page.close()
 
     def measure(self, call, view, number):
-        """Hands in a cloud: the teapot's upper half-shell as spheres would have it, from the view."""
+        """Adds a cloud to the survey: the upper half-shell of the teapot, approximated by spheres,
+        from the view."""
         points = []
         for i in range(4000):
             z = 0.2 + 4.6 * ((i * 0.6180339887) % 1.0)
@@ -374,7 +376,7 @@ scan: {sensor: %s, frame_period: 1.0, navigation: {horizontal_sigma: 0.2},
         run(*call, "--scan", str(cloud), "--pose", pose, "--world", "--id", f"scan {number}")
 
     def wait_for(self, page, condition):
-        """Until it holds, in whatever page is there by then."""
+        """Waits until the condition holds, also across reloads of the page."""
         deadline = time.monotonic() + 120
         while time.monotonic() < deadline:
             try:
@@ -383,7 +385,7 @@ scan: {sensor: %s, frame_period: 1.0, navigation: {horizontal_sigma: 0.2},
                 if page.get(f"Boolean({condition})"):
                     return
             except JavascriptException:
-                pass  # the page is being read
+                pass  # the page is reloading
             time.sleep(0.2)
         self.fail(f"never: {condition}")
 

@@ -1,4 +1,4 @@
-"""The page of a survey, seen as a customer sees it."""
+"""Tests the report of a survey through the user interface."""
 
 import json
 import math
@@ -10,14 +10,14 @@ from chromium import HOSTILE, MISSION, Page, check_figures, main, plan, points_o
 
 
 class ReportTest(unittest.TestCase):
-    """One survey with all that a page can show, made once."""
+    """A survey whose report contains all parts, created once."""
 
     @classmethod
     def setUpClass(cls):
         cls.temporary = tempfile.TemporaryDirectory()
         cls.folder = pathlib.Path(cls.temporary.name)
         cls.results = plan(cls.folder, MISSION % "teapot", "--max-views", "6")
-        # A mission file's name has no '/', but a summary may come from anywhere.
+        # The name of a mission file contains no '/', but a summary is not trusted.
         cls.summary = json.loads((cls.results / "summary.json").read_text())
         cls.summary["mission"] = HOSTILE
         (cls.results / "summary.json").write_text(json.dumps(cls.summary))
@@ -88,7 +88,8 @@ class ReportTest(unittest.TestCase):
             for (const box of document.querySelectorAll("[data-layer]")) if (!box.checked) box.click();""")
 
     def come_to_rest(self):
-        """The view flies to what is clicked; how long that takes is the machine's affair."""
+        """Waits until the camera has reached the clicked object. The duration depends on the
+        machine."""
         self.page.wait("""new Promise((done) => {
             const look = () => window.shown.panel.viewer.movement ? setTimeout(look, 20) : done(true);
             look(); })""")
@@ -133,10 +134,10 @@ class ReportTest(unittest.TestCase):
         self.assertEqual(page.complaints(), [])
 
     def look_around(self):
-        """Each button leads to where it says that it looks from."""
+        """Checks that each button moves the camera to the side that it names."""
         page = self.page
         page.browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [
-            {"name": "prefers-reduced-motion", "value": "reduce"}]})  # at once
+            {"name": "prefers-reduced-motion", "value": "reduce"}]})  # no animations
         seen_from = {"N": (1, 1), "E": (0, 1), "S": (1, -1), "W": (0, -1), "top": (2, 1)}
         for button in page.all("[data-look]"):
             button.click()
@@ -172,7 +173,7 @@ class ReportTest(unittest.TestCase):
         page.browser.execute_script(slide % "slider.max")
 
     def click_a_view_and_a_point(self):
-        """With the mouse, where they are drawn."""
+        """Clicks a view and a point with the mouse at their screen positions."""
         page = self.page
         self.come_to_rest()
         page.browser.execute_script("window.shown.panel.viewer.look('overview', false)")
@@ -191,7 +192,7 @@ class ReportTest(unittest.TestCase):
             const canvas = document.querySelector(".card canvas");
             const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
             return data.filter((value, i) => i % 4 === 1 && value > 60).length / (data.length / 4); })()""")
-        self.assertGreater(drawn, 0.01)  # what its sensor saw
+        self.assertGreater(drawn, 0.01)  # the points measured from the view
         page.all(".card .close")[0].click()
         page.click("[data-layer='views']")
         x, y = page.get("[0, 1].map((i) => window.shown.panel.canvas[i ? 'clientHeight' : 'clientWidth'] / 2)")
@@ -202,7 +203,7 @@ class ReportTest(unittest.TestCase):
             const { viewer } = window.shown.panel, [told, x, y] = arguments;
             const seen = viewer.on_screen(new THREE.Vector3(...told));
             return Math.hypot(seen.x - x, seen.y - y);""", told, x, y)
-        self.assertLess(off, 10)  # within reach of the mouse, told to a centimetre
+        self.assertLess(off, 10)  # within the click radius, shown to 1 cm
         page.all(".card .close")[0].click()
         page.click("[data-layer='views']")
 
@@ -221,7 +222,7 @@ class ReportTest(unittest.TestCase):
             return [count, least, data.clouds.free.step, data.summary.flight.clearance_m.total]; })()""")
         count, least, step, asked = nearest
         self.assertGreater(count, 100)
-        self.assertGreaterEqual(least, asked - step)  # of a grid
+        self.assertGreaterEqual(least, asked - step)  # grid spacing
         before = page.pixels()
         page.click("[data-layer='free']")
         self.assertNotEqual(page.pixels(), before)
@@ -231,7 +232,7 @@ class ReportTest(unittest.TestCase):
         page = self.page
         page.browser.execute_script("window.shown.panel.viewer.look('S', false)")
         page.all("#measure")[0].click()
-        # Two points with nothing in front of them.
+        # Two points that are not hidden.
         places = page.get("""(() => {
             const { viewer } = window.shown.panel, { positions, count } = viewer.main, found = [];
             viewer.camera.updateMatrixWorld();
@@ -247,7 +248,7 @@ class ReportTest(unittest.TestCase):
         self.assertIn("Distance", page.all(".card h3")[0].text)
         told = [float(value.text.replace("\u2009", "").split()[0]) for value in page.all(".card dd")]
         one, other = (place["place"] for place in places)
-        self.assertAlmostEqual(told[0], math.dist(one, other), delta=0.006)  # of two decimals
+        self.assertAlmostEqual(told[0], math.dist(one, other), delta=0.006)  # two decimals are shown
         self.assertAlmostEqual(told[1], math.dist(one[:2], other[:2]), delta=0.006)
         self.assertAlmostEqual(told[2], other[2] - one[2], delta=0.006)
         page.all("#measure")[0].click()
@@ -266,7 +267,7 @@ class ReportTest(unittest.TestCase):
 
 
 class FleetReportTest(unittest.TestCase):
-    """What several vehicles fly together is on the page as it is in the summary."""
+    """The report of a fleet contains the data of the summary."""
 
     def test_each_vehicle_has_its_way_its_row_and_its_times(self):
         with tempfile.TemporaryDirectory() as temporary:

@@ -1,8 +1,9 @@
-"""Checks README.md, CONTRIBUTING.md, CHANGELOG.md and docs/**/*.md, or the named pages: runs their
-checked blocks (docs_blocks.py), looks up the names that they mention (docs_names.py), and checks
-their size and form (docs_pages.py). Without named pages it also compares the generated reference
-(docs/generate_reference.py) and the fields of results (docs_results.py) with the program. With
---write it puts what the commands print into the pages. Exit code 1: something is stale."""
+"""Checks README.md, CONTRIBUTING.md, CHANGELOG.md and docs/**/*.md, or the named pages. Runs their
+checked blocks (docs_blocks.py), looks up the names in them (docs_names.py), and checks their size and
+form (docs_pages.py). Without named pages it also compares the generated reference
+(docs/generate_reference.py) and the fields of results (docs_results.py) with the program. With --write
+it updates the output of commands in the pages. Exit code 1: something is stale.
+"""
 
 import argparse
 import difflib
@@ -23,7 +24,7 @@ ROOT_PAGES = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")
 
 
 def scratch_folder(folder, program):
-    """Lays out what the commands of the pages expect to find where they run."""
+    """Creates the files that the commands of the pages require."""
     for name in ("missions", "docs"):
         (folder / name).symlink_to(ROOT / name)
     (folder / "build").mkdir()
@@ -34,7 +35,7 @@ def scratch_folder(folder, program):
 
 
 def run_block(block, folder, environment, session):
-    """The block's lines as they should be."""
+    """Returns the updated lines of the block."""
     if block.kind == "as":
         (folder / block.argument).write_text("\n".join(block.lines) + "\n", encoding="utf-8")
         return block.lines
@@ -48,7 +49,7 @@ def run_block(block, folder, environment, session):
 
 
 def run_page(text, program):
-    """The page as it should be, and the blocks that were run."""
+    """Returns the updated page and the blocks that were run."""
     lines = text.split("\n")
     blocks = docs_blocks.blocks(lines)
     with tempfile.TemporaryDirectory() as name:
@@ -63,7 +64,7 @@ def run_page(text, program):
 
 
 def check(page, names, program, write):
-    """Whether the page is right, and how many of its blocks were run."""
+    """Returns whether the page is correct, and the number of blocks that were run."""
     text = (ROOT / page).read_text(encoding="utf-8")
     renewed, run = run_page(text, program)
     checked = {block.first + 1 + i for block in run for i in range(len(block.lines))}
@@ -84,7 +85,7 @@ def check(page, names, program, write):
 
 
 def check_tree(names, program, write):
-    """Whether the pages as a whole are right: the index, the pictures and the reference."""
+    """Returns whether the index, the pictures and the reference are correct."""
     wrong = list(docs_pages.tree_complaints(ROOT, names.files))
     text = (ROOT / docs_results.PAGE).read_text(encoding="utf-8")
     wrong += [(docs_results.PAGE, complaint)

@@ -1,19 +1,19 @@
-"""The blocks of a page that are run.
+"""Checked blocks of a page.
 
-A block is checked if the line before it, blank ones not counted, is a comment of these:
+A block is checked if one of these comments precedes it, with or without blank lines between:
 
-    <!-- checked -->                     its commands are run; what they print is compared
-    <!-- checked, times of: planning --> the same; in lines whose first word is `planning` (more
-                                         words after commas) every number stands for any number
-    <!-- checked as: small.yaml -->      it is put into this file, for later commands of the page
+    <!-- checked -->                     runs its commands and compares their output
+    <!-- checked, times of: planning --> the same, but in lines that start with the word `planning`
+                                         (more words after commas) numbers match any number
+    <!-- checked as: small.yaml -->      writes it to this file, for later commands of the page
 
-It is indented by four spaces or fenced. A command follows "$ " and goes on after a backslash at the
-end of a line; the lines up to the next one are what it prints, errors included. "..." stands for
-anything within a line. A command that does not exit with 0 has a last line "(exit code 1)". All
-commands of a page run in one scratch folder with the program, the missions and the docs in it.
+Blocks are indented by four spaces or fenced. A command follows "$ " and continues after a backslash
+at the end of a line. The lines up to the next command are its output, including errors. "..." matches
+any text within a line. If the exit code is not 0, the last line is "(exit code 1)". All commands of a
+page run in one scratch folder with the program, the missions and the docs.
 
-What follows ">>> ", and goes on after "... " on the next lines, are statements of Python: all of a
-page run in one interpreter, for which `import skycap` is the module that was built.
+Lines after ">>> ", continued after "... ", are Python statements. All statements of a page run in one
+interpreter, in which `import skycap` imports the built module.
 """
 
 import dataclasses
@@ -24,14 +24,14 @@ import subprocess
 
 MARK = re.compile(r"^<!-- checked(?:(, times of| as): (.+?))? -->$")
 NUMBER = re.compile(r"\d+(?:\.\d+)?")
-MOST_SECONDS = 900  # of a command: it hangs, also on a machine with other work
-PYTHON = "/usr/bin/python3"  # for which the module is built
+MOST_SECONDS = 900  # limit for one command, sufficient on a busy machine
+PYTHON = "/usr/bin/python3"  # the module is built for this interpreter
 PROMPT, CONTINUED = ">>> ", "..."
 
 
 @dataclasses.dataclass
 class Block:
-    """Lines of a page, without their indentation; `first` counts from 0."""
+    """Lines of a page without their indentation. `first` is the index of the first one."""
 
     first: int
     lines: list
@@ -42,7 +42,7 @@ class Block:
 
 @dataclasses.dataclass
 class Step:
-    """A command and what the page says that it prints."""
+    """A command and its output according to the page."""
 
     command: list  # lines as written, from "$ " or ">>> " on
     output: list
@@ -64,17 +64,17 @@ class Step:
         return self.command[-1].endswith("\\")
 
     def expected(self):
-        """The output without the blank lines that part it from the next command."""
+        """Returns the output without the blank lines before the next command."""
         return "\n".join(self.output).rstrip("\n").split("\n") if any(self.output) else []
 
 
 def blocks(lines):
-    """The checked blocks of a page, in order."""
+    """Returns the checked blocks of a page in order."""
     found = []
     for number, line in enumerate(lines):
         mark = MARK.match(line)
         if line.startswith("<!-- checked") and not mark:
-            raise SystemExit(f"line {number + 1}: {line} is no mark that docs_blocks.py knows")
+            raise SystemExit(f"line {number + 1}: unknown mark {line}")
         if mark:
             found.append(block_after(lines, number, mark))
     return found
@@ -97,7 +97,8 @@ def block_after(lines, number, mark):
 
 
 def is_indented(lines, number):
-    """A blank line belongs to an indented block if the next one does."""
+    """Returns true if the line belongs to an indented block. A blank line does if the next one
+    does."""
     if lines[number].strip():
         return lines[number].startswith("    ")
     return number + 1 < len(lines) and lines[number + 1].startswith("    ")
@@ -118,7 +119,7 @@ def steps(block):
 
 
 class Session:
-    """The interpreter of a page, which runs from its first statement on."""
+    """Python interpreter of a page, which runs from its first statement on."""
 
     def __init__(self, folder, environment):
         self._folder, self._environment, self._process = folder, environment, None
@@ -131,7 +132,7 @@ class Session:
             self._process.communicate()
 
     def run(self, step):
-        """What the statement prints."""
+        """Returns the output of the statement."""
         if not self._process:
             self._process = subprocess.Popen(
                 [PYTHON, pathlib.Path(__file__).with_name("docs_session.py")], cwd=self._folder,
@@ -143,7 +144,7 @@ class Session:
 
 
 def run(step, folder, environment):
-    """What the command prints, and its exit code as a line if it is not 0."""
+    """Returns the output of the command, with the exit code as a line if it is not 0."""
     done = subprocess.run(
         ["bash", "-c", step.shell()], cwd=folder, env=environment, stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=MOST_SECONDS, text=True,
@@ -153,7 +154,7 @@ def run(step, folder, environment):
 
 
 def agrees(written, printed, words_of_times):
-    """Whether the page's line stands for the printed one."""
+    """Returns true if the page's line matches the printed one."""
     if written.split()[:1] and written.split()[0] in words_of_times:
         written, printed = (NUMBER.sub("0", line) for line in (written, printed))
     pattern = ".*".join(re.escape(part) for part in written.split("..."))
@@ -161,7 +162,7 @@ def agrees(written, printed, words_of_times):
 
 
 def renewed(step, printed, words_of_times):
-    """The output that the page should have; the page's own lines where they agree."""
+    """Returns the updated output. Matching lines of the page are kept."""
     written = step.expected()
     if len(written) == len(printed):
         printed = [old if agrees(old, new, words_of_times) else new

@@ -1,4 +1,4 @@
-"""Looks up the errors that pages show in docs/reference/messages.md."""
+"""Looks up the errors on pages in docs/reference/messages.md."""
 
 import re
 
@@ -9,7 +9,7 @@ VALUE = "…"
 
 
 def listed(text):
-    """The messages of the page as lists of their fixed parts, in order."""
+    """Returns the listed messages as lists of their fixed parts, in order."""
     found = []
     for problem, remedy in ROW.findall(text):
         message = f"{problem}; {plain(remedy)}" if remedy.strip() else problem
@@ -19,7 +19,7 @@ def listed(text):
 
 
 def plain(cell):
-    """A cell's text without what keeps Markdown from formatting it."""
+    """Returns the text of a cell without Markdown escapes."""
     return re.sub(r"\\([|*_])", r"\1", cell).replace("&lt;", "<").replace("&amp;", "&")
 
 
@@ -34,7 +34,7 @@ def holds(message, parts):
 
 
 def complaints(text, messages):
-    """Yields (line number, what is wrong) for the errors that a page shows."""
+    """Yields (line number, problem) for the errors on a page."""
     for number, line in enumerate(text.split("\n"), 1):
         for message in ERROR.findall(line.strip()):
             is_pattern = "FILE:LINE" in message or VALUE in message or "..." in message

@@ -1,5 +1,6 @@
-"""The names that a page mentions and that must exist: links, paths, commands with their options,
-keys of mission files, tests, and identifiers of the sources."""
+"""Checks that names on a page exist: links, paths, commands with their options, keys of mission files,
+tests, and identifiers of the sources.
+"""
 
 import functools
 import json
@@ -28,7 +29,7 @@ PLACEHOLDER = re.compile(r"[A-Z]{2,}|\.\.\.|\bN\b")
 
 
 class Names:
-    """What there is: the tracked files, the program's verbs and options, the keys, the tests."""
+    """Existing names: tracked files, commands and options of the program, keys, tests."""
 
     def __init__(self, root, program):
         self.root, self.program = root, program
@@ -60,7 +61,7 @@ class Names:
 
     @functools.cache
     def help(self, verb):
-        """What `skycap VERB --help` prints; nothing if there is no such verb."""
+        """Returns the output of `skycap VERB --help`; empty if the command does not exist."""
         if verb not in self.verbs():
             return None
         return subprocess.run([self.program / "skycap", verb, "--help"], capture_output=True,
@@ -68,7 +69,7 @@ class Names:
 
     @functools.cache
     def ros2_help(self):
-        """What `skycap_ros2 --help` prints; nothing if it is not built."""
+        """Returns the output of `skycap_ros2 --help`; empty if it is not built."""
         program = self.program / "skycap_ros2"
         if not program.exists():
             return None
@@ -87,7 +88,8 @@ class Names:
 
 
 def with_parents(field):
-    """A field's name and those of the objects that hold it, with and without marks of lists."""
+    """Returns the names of a field and of the objects that contain it, with and without list
+    marks."""
     parts = field.split(".")
     for count in range(1, len(parts) + 1):
         name = ".".join(parts[:count])
@@ -102,8 +104,8 @@ def keys_of(schema, prefix=""):
 
 
 def complaints(page, text, names):
-    """Yields (line number from 1, what is wrong) for a page, a path relative to the root. Records
-    of other versions and generated parts may mention names that do not exist."""
+    """Yields (line number from 1, problem) for a page with a path relative to the root. Records of
+    other versions and generated parts may contain other names."""
     lines = text.split("\n")
     for number, line in enumerate(lines, 1):
         for target in LINK.findall(CODE_SPAN.sub("", line)):
@@ -115,13 +117,14 @@ def complaints(page, text, names):
 
 
 def without_generated(text):
-    """The page with blank lines instead of its generated parts (docs/generate_reference.py)."""
+    """Returns the page with blank lines instead of its generated parts
+    (docs/generate_reference.py)."""
     return GENERATED.sub(lambda match: "\n" * match[0].count("\n"), text)
 
 
 def code_of(lines):
-    """(line number, code) for spans of paragraphs, and for the commands of blocks, with the lines
-    that continue them."""
+    """Returns (line number, code) for code spans in paragraphs, and for the commands of blocks with
+    their continuation lines."""
     paragraph, fenced, number = [], False, 0
     while number < len(lines):
         line = lines[number]
@@ -148,7 +151,7 @@ def spans(paragraph, lines_before):
 
 
 def command_in(block_line):
-    """The command of a block's line without its prompt, comment and what it is run under."""
+    """Returns the command in a line of a block, without prompt, comment and wrapping command."""
     text = re.split(r"\s{3,}|\s#\s", block_line.strip().removeprefix("$ "))[0]
     start = COMMAND.search(text)
     return text[start.start():] if start else None
@@ -201,7 +204,7 @@ def command_complaints(command, names):
 
 
 def source_of(program):
-    """The source of a benchmark, the folder of a test program."""
+    """Returns the source of a benchmark, or the folder of a test program."""
     return program.removesuffix("_test") if program.endswith("_test") else program + ".cpp"
 
 

@@ -1,4 +1,5 @@
-"""The shape of the documentation: sizes of pages, headings, pictures, and links from the index."""
+"""Checks the form of the documentation: page sizes, headings, pictures, and links from the
+index."""
 
 import pathlib
 import re
@@ -14,12 +15,12 @@ PICTURE_TYPES = (".png", ".jpg", ".svg")
 
 
 def is_stub(name):
-    """Old pages lie in docs itself and say where the new ones are."""
+    """Returns true for old pages in docs, which link to the new ones."""
     return re.fullmatch(r"docs/[\w-]+\.md", name) is not None and name != "docs/index.md"
 
 
 def words(text):
-    """The words of a page without its code blocks, comments and addresses of links."""
+    """Returns the words of a page without code blocks, comments and link addresses."""
     text = re.sub(r"<!--.*?-->", "", text, flags=re.DOTALL)
     text = re.sub(r"^```.*?^```", "", text, flags=re.DOTALL | re.MULTILINE)
     text = re.sub(r"^(?: {4}.*\n)+", "", text, flags=re.MULTILINE)
@@ -28,7 +29,7 @@ def words(text):
 
 
 def page_complaints(name, text):
-    """Yields (line number, what is wrong) for a page."""
+    """Yields (line number, problem) for a page."""
     if is_stub(name):
         return
     headings = re.findall(r"^# (.+)$", re.sub(r"^```.*?^```", "", text, flags=re.S | re.M), re.M)
@@ -48,7 +49,7 @@ def page_complaints(name, text):
 
 
 def linked_pages(page, text):
-    """The pages and pictures that a page links to, relative to the root."""
+    """Returns the pages and pictures that a page links to, relative to the root."""
     targets = re.findall(r"\]\(([^)\s#]+)", text) + [found[2] for found in PICTURE.findall(text)]
     targets += re.findall(r"(?:src|srcset)=\"([^\"\s]+)", text)
     for target in targets:
@@ -63,7 +64,8 @@ def linked_pages(page, text):
 
 
 def tree_complaints(root, files):
-    """Yields (file, what is wrong) for the pages as a whole: sizes, and what nothing links to."""
+    """Yields (file, problem) for the documentation as a whole: sizes, and files without links to
+    them."""
     pages = [name for name in files if name.endswith(".md")
              and (name.startswith("docs/") or "/" not in name)]
     linked, sizes = set(), []

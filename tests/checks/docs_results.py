@@ -1,7 +1,8 @@
-"""Compares the fields that docs/reference/results.md lists with those that real commands write.
+"""Compares the fields listed in docs/reference/results.md with the output of real commands.
 
-A list of fields stands between <!-- fields: FILE --> and <!-- end of fields -->: the code spans of
-the first cells of its tables. A span that begins with a dot continues the first one of its cell."""
+A list of fields is between <!-- fields: FILE --> and <!-- end of fields -->: the code spans in the
+first cells of its tables. A span that begins with a dot continues the first one of its cell.
+"""
 
 import json
 import pathlib
@@ -12,9 +13,9 @@ import tempfile
 PAGE = pathlib.PurePosixPath("docs/reference/results.md")
 LIST = re.compile(r"<!-- fields: (\S+) -->\n(.*?)<!-- end of fields -->", re.DOTALL)
 SPAN = re.compile(r"`([^`]+)`")
-# Objects that are listed once and occur at two places.
+# Objects that occur in two places and are listed once.
 ALIASES = {"flight.fleet.vehicles[].sorties[]": "flight.route.sorties[]"}
-# Maps whose keys are names of parts or settings: their fields are not listed one by one.
+# Maps whose keys are names of parts or settings. Their fields are not listed individually.
 MAPS = ("settings", "planning_time_parts_s", "per_view[].planning_time_parts_s")
 
 TEAPOT = """
@@ -40,7 +41,7 @@ HOUSE = {
         "semantics": {"surfaces": [{"type": "WallSurface"}, {"type": "RoofSurface"},
                                    {"type": "GroundSurface"}],
                       "values": [0, 0, 0, 0, 1, 2]}}]}}}
-# What each survey is there for.
+# Surveys by purpose.
 SURVEYS = {
     "fly-through": (TEAPOT, ["--set", "flight.views=replanned", "--set", "flight.style=fly-through",
                              "--set", "sensor.exposure=0.001"]),
@@ -55,7 +56,7 @@ SURVEYS = {
 
 
 def listed_fields(text):
-    """The fields of each file that the page lists."""
+    """Returns the listed fields of each file."""
     found = {}
     for name, lists in LIST.findall(text):
         fields = found.setdefault(name, set())
@@ -100,7 +101,7 @@ def run(program, folder, *arguments):
 
 
 def documents(program, folder):
-    """Yields (file, its content) of small commands."""
+    """Yields (file, content) for the results of small commands."""
     (folder / "house.city.json").write_text(json.dumps(HOUSE), encoding="utf-8")
     for name, (mission, options) in SURVEYS.items():
         file = folder / f"{name}.yaml"
@@ -114,7 +115,7 @@ def documents(program, folder):
 
 
 def all_written(program):
-    """The fields of each file, over all commands."""
+    """Returns the fields of each file over all commands."""
     found = {}
     with tempfile.TemporaryDirectory() as name:
         for file, text in documents(program, pathlib.Path(name)):
@@ -123,13 +124,13 @@ def all_written(program):
 
 
 def without_parents(fields):
-    """Leaves out what is null or empty in one file and has fields in another one."""
+    """Removes fields that are null or empty in one file and objects in another."""
     return {field for field in fields
             if not any(other.startswith((field + ".", field + "[]")) for other in fields)}
 
 
 def complaints(text, program):
-    """Yields what is wrong with the page's lists."""
+    """Yields the problems of the listed fields."""
     listed, written = listed_fields(text), all_written(program)
     for file in sorted(listed.keys() | written.keys()):
         there, here = written.get(file, set()), listed.get(file, set())

@@ -1,6 +1,7 @@
-"""Runs statements of a page one after the other, as Python's own prompt does, but of an exception
-shows the last line alone. Each line of standard input is a statement, as JSON; so is each answer,
-what it prints."""
+"""Runs Python statements one after the other, like the interactive interpreter, but prints only the last
+line of an exception. Each line of standard input is a JSON string with a statement. Each line of
+standard output is a JSON string with its output.
+"""
 
 import code
 import contextlib

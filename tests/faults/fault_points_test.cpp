@@ -1,5 +1,5 @@
-// Every step that a verb takes on the disk fails once, and the program dies at each once; every
-// start of a program fails, and allocations do.
+// Each disk operation of a command fails once, and the program is killed once at each of them. Each
+// start of a child process and a sample of allocations fail as well.
 #include <cmath>
 #include <filesystem>
 #include <sstream>
@@ -27,7 +27,8 @@ TEST(FaultPoints, LeavePlanResultsComplete) {
   try_faults(command, {"memory"}, 60);
 }
 
-/// On a full disk the new survey may stand without its route: the exit code says so.
+/// On a full disk the new survey may be complete without its route. The exit code then reports the
+/// failure.
 TEST(FaultPoints, LeavePlanResultsWithFlightComplete) {
   const Surveys surveys;
   const Trial trial{.old_folder = surveys["1"],
@@ -86,8 +87,8 @@ TEST(FaultPoints, LeaveBenchmarkResultsComplete) {
   try_faults(command, {"full", "kill"}, 15);
 }
 
-/// On a full disk its tables may be of the items that found room: the exit code says so, and the
-/// same command goes on.
+/// On a full disk the tables may contain only the runs that fitted. The exit code then reports the
+/// failure, and the same command resumes the campaign.
 TEST(FaultPoints, LeaveCampaignResultsComplete) {
   const testing_support::TemporaryFolder folder;
   folder.file("m.yaml", quick);
@@ -120,7 +121,7 @@ TEST(FaultPoints, LeaveModelFilesComplete) {
 
 TEST(FaultPoints, LeaveHtmlReportsComplete) {
   const Surveys surveys;
-  // Not named .html, so that all of it is compared.
+  // The suffix is not .html, so that the complete file is compared.
   const Command report = [&](const std::string& seed, const fs::path& out) {
     return std::vector<std::string>{"report", surveys[seed], "--out", out / "page"};
   };
@@ -166,7 +167,7 @@ TEST(FaultPoints, LeaveProposedMissionsComplete) {
   const Trial trial{.old_folder = old_folder,
                     .change = [&](const fs::path& out,
                                   const Fault& fault) { return run(site("12", out), fault); },
-                    .can_be_repeated = false,  // an older file is never written over
+                    .can_be_repeated = false,  // existing files are never overwritten
                     .may_also_be = {}};
   try_faults(trial, {"full", "kill"}, all);
   try_faults(trial, {"memory"}, 15);
@@ -174,7 +175,7 @@ TEST(FaultPoints, LeaveProposedMissionsComplete) {
 
 TEST(FaultPoints, LeaveViewerPagesComplete) {
   const Surveys surveys;
-  // Not named .html, so that all of it is compared.
+  // The suffix is not .html, so that the complete file is compared.
   const auto view = [&](const fs::path& what) {
     return [&, what](const std::string& seed, const fs::path& out) {
       return std::vector<std::string>{"view", surveys[seed] / what, "--out", out / "page"};
@@ -185,7 +186,7 @@ TEST(FaultPoints, LeaveViewerPagesComplete) {
   try_faults(view(""), {"full", "kill"}, all);
 }
 
-/// Eight minutes of hovering and of legs, up, down and in four directions.
+/// Returns a log of eight minutes with hover, climbs, descents and legs in four directions.
 std::string flight_log(double hover_power) {
   std::ostringstream log;
   log << "time_s,east_m_s,north_m_s,up_m_s,power_w\n";

@@ -23,7 +23,8 @@ namespace fs = std::filesystem;
 std::string repeatable_part(const fs::path& file) {
   const std::string bytes = geometry::read_file(file), extension = file.extension();
   if (extension == ".md") return bytes.substr(0, bytes.find('\n'));
-  if (extension == ".html") return bytes.substr(bytes.size() - 12);  // whole: it has its end
+  // The end shows that the file is complete.
+  if (extension == ".html") return bytes.substr(bytes.size() - 12);
   if (extension != ".json" && extension != ".csv") return bytes;
   std::istringstream lines(bytes);
   std::string kept;
@@ -36,7 +37,7 @@ std::string repeatable_part(const fs::path& file) {
   return kept;
 }
 
-/// Of trials whose times differ: seeds, views, coverage.
+/// Removes the times from the trial tables. Seeds, views and coverage remain.
 std::string without_times(const std::string& name, const std::string& text) {
   if (name == "curves.svg") return text.substr(0, text.find('>'));  // The axes show times, too.
   if (name == "curves.csv") return text.substr(0, text.find(",planning_time_s,"));
@@ -48,7 +49,7 @@ std::string without_times(const std::string& name, const std::string& text) {
   return kept;
 }
 
-/// What an interrupted survey and an interrupted scan are gone on with.
+/// Files from which an interrupted survey or scan resumes.
 constexpr std::array journals{"survey.journal", "unfinished"};
 
 /// Runs `change` in a copy of the old folder.
@@ -58,7 +59,7 @@ int changed(const Trial& trial, const fs::path& out, const Fault& fault) {
   return trial.change(out, fault);
 }
 
-/// The number of steps of a kind that a run without a fault takes.
+/// Returns the number of steps of this kind in a run without faults.
 long count_steps(const Trial& trial, const std::string& kind, const fs::path& scratch) {
   const fs::path count = scratch / "count";
   EXPECT_EQ(changed(trial, scratch / "out", {kind, 0, count}), 0);
@@ -67,7 +68,7 @@ long count_steps(const Trial& trial, const std::string& kind, const fs::path& sc
   return steps;
 }
 
-/// After a run that died.
+/// Checks that the command succeeds when it is repeated after the program died.
 void expect_repeatable(const Trial& trial, const fs::path& out, const Content& found,
                        const Content& after) {
   if (trial.can_be_repeated || found != after) {
@@ -80,19 +81,20 @@ void expect_repeatable(const Trial& trial, const fs::path& out, const Content& f
 void try_fault(const Trial& trial, const Fault& fault, const fs::path& out, const Content& before,
                const Content& after) {
   const int exit_code = changed(trial, out, fault);
-  { const geometry::OutputFolder next(out); }  // whoever comes next
+  // Removes leftovers when the next command opens the folder.
+  { const geometry::OutputFolder next(out); }
   const Content found = read_content(out);
   const bool is_other = trial.may_also_be && exit_code != 0 && trial.may_also_be(found, after);
   EXPECT_TRUE(found == before || found == after || is_other) << "neither old nor new";
   EXPECT_TRUE(exit_code != 0 || found == after) << "exit 0";
-  // Without memory before main() begins, the runtime aborts.
+  // If memory runs out before main(), the runtime aborts.
   const bool is_killed =
       fault.kind == "kill" || (fault.kind == "memory" && exit_code == 128 + SIGABRT);
   EXPECT_TRUE(is_killed || exit_code < 4) << "exit " << exit_code;
   if (fault.kind == "kill") expect_repeatable(trial, out, found, after);
 }
 
-/// Tries the points that a sample is of, and says how many of how many.
+/// Tries a sample of the fault points and prints the numbers of tried and existing points.
 void try_points(const std::string& kind, long steps, long sample,
                 const std::function<void(const Fault&)>& try_point) {
   const bool tries_all = std::getenv("FAULT_POINTS") != nullptr && kind != "memory";

@@ -1,7 +1,7 @@
-/// The program with a fault injected (injector.cpp), and what must be true of its results then.
+/// Runs the program with an injected fault (injector.cpp) and checks its results.
 ///
-/// With FAULT_POINTS=all in the environment all points on the disk are tried, not a sample (of
-/// memory it is always one): tests/faults/run does so.
+/// With FAULT_POINTS=all in the environment, all points on the disk are tried instead of a sample.
+/// Memory faults are always sampled. tests/faults/run sets this variable.
 #pragma once
 
 #include <filesystem>
@@ -16,68 +16,69 @@
 
 namespace skycap::faults {
 
-/// Names, and contents without what differs from run to run, which is durations: of JSON files the
-/// lines that tell the seed and whether the run was complete, of CSV files all columns but the
-/// last, of reports the first line. Of folders, such as those of finished trials, the name. What an
-/// unfinished survey is gone on with is no part of it.
+/// File names and contents, without durations, which differ between runs. Of JSON files it contains
+/// the lines with the seed and the completion flag. Of CSV files it contains all columns except the
+/// last, and of reports the first line. Of folders, such as those of finished trials, it contains
+/// the name. Files for resuming an unfinished survey are excluded.
 using Content = std::map<std::string, std::string>;
 
 Content read_content(const std::filesystem::path& folder);
 
 struct Fault {
-  std::string kind;  ///< FAULT_KIND
+  std::string kind;  ///< value of FAULT_KIND
   long at = 0;
-  std::filesystem::path count;  ///< where the number of steps goes
+  std::filesystem::path count;  ///< file for the number of steps
 };
 
-/// Starts the program; what it says goes to `output`, or nowhere.
+/// Starts the program. Its output goes to the descriptor `output`, or is discarded.
 pid_t start(const std::vector<std::string>& arguments, const Fault& fault, int output = -1);
 
-/// Its exit code, or 128 and the signal that ended it.
+/// Returns the exit code, or 128 plus the signal number.
 int wait_for_exit_code(pid_t program);
 
 int run(const std::vector<std::string>& arguments, const Fault& fault);
 
-/// What changes a folder, and is run with a fault. Returns an exit code.
+/// Command that changes a folder and runs with a fault. Returns an exit code.
 using Change = std::function<int(const std::filesystem::path& out, const Fault& fault)>;
 
-/// A folder as it was, and what changes it.
+/// Initial folder and the command that changes it.
 struct Trial {
   std::filesystem::path old_folder;
   Change change;
-  /// False where a result is never written over: then a second run says so.
+  /// False if the command never overwrites a result. A second run then fails.
   bool can_be_repeated = true;
-  /// What may stand but for the whole old and the whole new, if the exit code tells of it.
+  /// Accepts contents other than the complete old and new results, if the exit code reports a
+  /// failure.
   std::function<bool(const Content& found, const Content& after)> may_also_be;
 };
 
-/// A survey whose route did not find room on the disk.
+/// Returns true if the result is a survey whose route did not fit on the disk.
 bool is_survey_without_route(const Content& found, const Content& after);
 
-/// Tries about `sample` faults of each kind, evenly spread, or all with FAULT_POINTS=all: the
-/// folder then holds the whole old result or the whole new one, and nothing else but what an
-/// unfinished survey can go on from. Run again after it died, the program gives the new result.
-/// Nothing but being killed, or having no memory to begin with, ends it by a signal.
+/// Tries about `sample` evenly spaced faults of each kind, or all faults with FAULT_POINTS=all.
+/// Afterwards the folder contains the complete old or the complete new result, and at most the
+/// files for resuming a survey. A second run after a crash produces the new result. The program
+/// only ends by a signal if it is killed or has no memory at its start.
 void try_faults(const Trial& trial, const std::vector<std::string>& kinds, long sample);
 
-/// A verb whose result depends on the seed: 1 gives the old one, 2 the new one.
+/// Command whose result depends on the seed: 1 gives the old result, 2 the new one.
 using Command =
     std::function<std::vector<std::string>(const std::string& seed, const std::filesystem::path&)>;
 
 void try_faults(const Command& command, const std::vector<std::string>& kinds, long sample);
 
-/// The same, on the disk, for what may stop half-way: run again, whatever happened, it goes on to
-/// where it would have been.
+/// Tries faults on the disk in commands that can be interrupted. A second run always resumes and
+/// completes the result.
 void try_going_on(const Trial& trial, long sample);
 
 inline constexpr long all = 1'000'000;
 
-/// Missions whose surveys take half a second: a teapot of a metre,
+/// Missions whose surveys take half a second: a teapot with a length of 1 m,
 extern const char* const quick;
-/// and a house of 20 m that is flown round, with a route in every format.
+/// and a house of 20 m with a flight and a route in every format.
 extern const char* const flight_mission_text;
 
-/// A survey with a flight, planned once with each seed: what verbs read.
+/// Survey with a flight, planned once for each seed. Input of the tested commands.
 class Surveys {
  public:
   Surveys();

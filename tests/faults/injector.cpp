@@ -1,13 +1,13 @@
-// A library to be preloaded into a program: it counts steps of the program, and has one of them
-// fail, or the program die there.
+// Preloaded library that counts the steps of a program and makes one of them fail, or kills the
+// program at that step.
 //
-//   FAULT_KIND   what is counted, and what happens:
-//                "full"    steps on the disk; ENOSPC, but for removals, which a full disk allows
-//                "kill"    steps on the disk; the process dies, as by kill -9
-//                "memory"  allocations; there is no memory
-//                "start"   starts of other programs; EAGAIN
-//   FAULT_AT     number of the step, counted from one; 0: none
-//   FAULT_COUNT  a file that the number of steps is written to when the program ends
+// FAULT_KIND   counted steps and their effect:
+//   "full"    disk operations fail with ENOSPC, except removals, which a full disk allows
+//   "kill"    disk operations; the process is killed as by kill -9
+//   "memory"  allocations fail
+//   "start"   starts of other programs fail with EAGAIN
+// FAULT_AT     number of the step, counted from 1; 0: none
+// FAULT_COUNT  file that receives the number of steps when the program ends
 #include <atomic>
 #include <cerrno>
 #include <csignal>
@@ -22,7 +22,7 @@
 #include <sys/uio.h>
 #include <unistd.h>
 
-extern "C" void* __libc_malloc(size_t size) noexcept;  // dlsym() itself allocates
+extern "C" void* __libc_malloc(size_t size) noexcept;  // dlsym() allocates memory
 
 namespace {
 
@@ -37,15 +37,15 @@ Kind parse_fault_kind(const char* name) {
   return Kind::none;
 }
 
-/// Set once this library is loaded; what happens before is not counted.
+/// Set when this library is loaded. Earlier steps are not counted.
 Kind kind = Kind::none;
 long fault_step = 0;
 std::atomic<long> steps{0};
 
-/// Counts a step; true if it is the one.
+/// Counts a step. Returns true if this step is the fault point.
 bool is_hit() { return ++steps == fault_step; }
 
-/// A step on the disk: true if it is to fail.
+/// Counts a disk operation. Returns true if it must fail.
 bool fails(bool needs_space = true) {
   if (kind != Kind::full && kind != Kind::kill) return false;
   if (!is_hit()) return false;
@@ -59,7 +59,7 @@ Function* real(const char* name) {
   return reinterpret_cast<Function*>(::dlsym(RTLD_NEXT, name));
 }
 
-/// Files alone: not the streams to the terminal.
+/// Returns true for files, false for the standard streams.
 bool is_file(int handle) { return handle > STDERR_FILENO; }
 
 class Switch {
@@ -68,7 +68,7 @@ class Switch {
     const char* at = std::getenv("FAULT_AT");
     const char* count = std::getenv("FAULT_COUNT");
     if (count != nullptr) std::snprintf(count_, sizeof(count_), "%s", count);
-    ::unsetenv("FAULT_COUNT");  // the program's children have other numbers
+    ::unsetenv("FAULT_COUNT");  // child processes must not overwrite the count
     fault_step = at == nullptr ? 0 : std::atol(at);
     kind = parse_fault_kind(std::getenv("FAULT_KIND"));
   }

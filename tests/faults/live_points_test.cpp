@@ -1,6 +1,6 @@
-// Live surveys live in their folders: every step that next, serve and finish take on the disk fails
-// once, and the program dies at each once. The same scan, sent again, brings the survey to where it
-// would have been.
+// Live surveys are stored in their folders. Each disk operation of next, serve and finish fails
+// once, and the program is killed once at each of them. Sending the same scan again brings the
+// survey to the expected state.
 #include <array>
 #include <csignal>
 #include <filesystem>
@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A survey that has taken in one scan, and another that it has not.
+/// A survey with one scan, and a second scan that is not yet part of it.
 class LiveFaultPoints : public testing::Test {
  protected:
   LiveFaultPoints() { EXPECT_EQ(run(next("1", begun_), {}), 0); }
@@ -64,7 +64,7 @@ TEST_F(LiveFaultPoints, LeaveFinishResultsComplete) {
              {"full", "kill"}, 15);
 }
 
-/// What is written to `pipe` up to the end of a line, or of the program.
+/// Returns the text written to `pipe` up to the end of the line or of the program.
 std::string read_line(int pipe) {
   std::string line;
   for (char c = 0; ::read(pipe, &c, 1) == 1 && c != '\n';) line += c;
@@ -73,7 +73,7 @@ std::string read_line(int pipe) {
 
 constexpr skycap_live::Pose pose{1, 0, 0, 0, 0, 0, 1, -30, 0, -1, 0, 12};
 
-/// Of a cloud in the world, as the sensor sees them.
+/// Reads a cloud and converts it from the world frame to the sensor frame.
 std::vector<float> read_points(const fs::path& cloud) {
   std::vector<float> numbers;
   geometry::read_positions(cloud, [&](std::span<const Eigen::Vector3f> chunk, double) {
@@ -84,7 +84,7 @@ std::vector<float> read_points(const fs::path& cloud) {
   return numbers;
 }
 
-/// The server, to which a client sends a scan; then it finishes the survey.
+/// A client sends a scan to the server and then finishes the survey.
 TEST_F(LiveFaultPoints, LetServeResumeWithFailedScan) {
   const std::vector<float> points = read_points(surveys_["2"] / "cloud.ply");
   const auto serve = [&](const fs::path& out, const Fault& fault) {
@@ -97,7 +97,7 @@ TEST_F(LiveFaultPoints, LetServeResumeWithFailedScan) {
       skycap_live::Survey client(read_line(pipe[0]));
       client.add_cloud(points, pose);
       client.finish();
-    } catch (const std::exception&) {  // it died, or says that it could not
+    } catch (const std::exception&) {  // the server died or reported an error
       ::kill(server, SIGTERM);
     }
     ::close(pipe[0]);

@@ -15,7 +15,7 @@ double uniform(std::mt19937_64& random, double low, double high) {
   return std::uniform_real_distribution<double>(low, high)(random);
 }
 
-/// A grid over the parallelogram at `corner`, facing along u x v.
+/// Returns a grid over the parallelogram at `corner`, with its front along u x v.
 Mesh patch(const Vector3d& corner, const Vector3d& u, const Vector3d& v, int cells) {
   Mesh mesh;
   for (int row = 0; row <= cells; ++row) {

@@ -1,5 +1,5 @@
-/// Vehicles for the tests of flight/, one or two of each dialect. The ones that ship are data of
-/// missions/, which these tests do not know.
+/// Vehicles for the tests of flight/, one or two for each autopilot dialect. These tests do not use
+/// the shipped presets, which belong to missions/.
 #pragma once
 
 #include <span>
@@ -9,7 +9,8 @@
 
 namespace skycap::flight {
 
-/// "generic" (PX4), "generic_ardupilot" (ArduCopter's defaults), "m350_rtk" and "m30t" (DJI).
+/// Returns "generic" (PX4), "generic_ardupilot" (ArduCopter's defaults), "m350_rtk" and "m30t"
+/// (DJI).
 std::span<const Vehicle> vehicle_profiles();
 const Vehicle& vehicle_profile(const std::string& name);
 

@@ -1,6 +1,6 @@
-// Each file of tests/fuzz/corpus is read by its reader, whole, cut short, and with bytes changed:
-// what libFuzzer does for hours, for seconds. CORPUS_SEED and CORPUS_CHANGES in the environment
-// draw other changes, and so many for each file.
+// Each file in tests/fuzz/corpus is read by its reader: complete, truncated and with changed bytes.
+// This repeats in seconds what libFuzzer does for hours. CORPUS_SEED and CORPUS_CHANGES in the
+// environment set the random seed and the number of changes for each file.
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -28,7 +28,7 @@ std::vector<fs::path> find_corpus_files(const Reader& reader) {
   return files;
 }
 
-/// The bytes as they are, but those of gzip, which read_file() would decompress.
+/// Returns the raw bytes. read_file() would decompress gzip files.
 std::string read_bytes(const fs::path& path) {
   std::ifstream stream(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
@@ -47,7 +47,7 @@ void change_bytes(std::string& bytes, std::mt19937& random) {
   }
 }
 
-/// A piece is cut out, or stands a second time elsewhere.
+/// Cuts out a chunk, or inserts a copy of it at another position.
 void move_chunk(std::string& bytes, std::mt19937& random) {
   const std::size_t begin = random() % bytes.size();
   const std::string chunk = bytes.substr(begin, 1 + random() % 64);
@@ -58,7 +58,7 @@ void move_chunk(std::string& bytes, std::mt19937& random) {
   }
 }
 
-/// A number in text, or four or eight bytes, become one at the end of what there is.
+/// Replaces a number in text, or four or eight bytes, by an extreme value.
 void make_extreme(std::string& bytes, std::mt19937& random) {
   static const std::vector<std::string> texts = {"0",    "-1",  "1e308",      "-1e-320",
                                                  "nan",  "inf", "4294967296", "9223372036854775808",

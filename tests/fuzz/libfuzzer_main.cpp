@@ -1,4 +1,4 @@
-// libFuzzer's entry: the reader is named by the environment, as in
+// Entry point for libFuzzer. The environment selects the reader, for example:
 //   FUZZ_READER=mission build/fuzz/tests/fuzz/skycap_fuzz -max_total_time=60 FOUND
 //   tests/fuzz/corpus/mission
 #include <cstdio>

@@ -1,4 +1,4 @@
-// What comes over links: MAVLink of an autopilot, messages of a live survey's client.
+// Data from links: MAVLink messages of an autopilot and messages of a live survey's client.
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -50,8 +50,9 @@ void hear_all(mavlink::FrameReader& reader, mavlink::VehicleState& state, double
   }
 }
 
-/// As bytes on a link, in pieces; and as frames whose checksums are right: six bytes of a head, the
-/// length of a payload, the payload. Else little would be read behind the checksums.
+/// Reads the bytes in pieces as link data, and as frames with valid checksums: six header bytes,
+/// the payload length, the payload. Without valid checksums, the message parsers would hardly be
+/// reached.
 int run_mavlink(const std::uint8_t* bytes, std::size_t size) {
   double now = 0.0;
   mavlink::VehicleState state, sealed_state;
@@ -76,7 +77,7 @@ int run_mavlink(const std::uint8_t* bytes, std::size_t size) {
   return 0;
 }
 
-/// As they come on the socket.
+/// Reads the bytes as they arrive at the socket.
 int run_wire(const std::uint8_t* bytes, std::size_t size) {
   return run_reader("", [&] {
     online::FrameReader reader;
@@ -93,7 +94,7 @@ int run_wire(const std::uint8_t* bytes, std::size_t size) {
   });
 }
 
-/// A survey that takes what it is given: of a depth camera, or of a scanner.
+/// Returns the setup of a live survey with a depth camera or a scanner.
 const missions::config::MissionSetup& live_setup(bool has_scanner) {
   constexpr const char* rest =
       "planner: {name: see++, density: 5200, resolution_radius: 0.0525, occluder_spacing: 0.03,\n"
@@ -108,8 +109,8 @@ const missions::config::MissionSetup& live_setup(bool has_scanner) {
   return has_scanner ? scanner : camera;
 }
 
-/// Messages behind each other, without checksums: a line of JSON, two bytes for the length of the
-/// payload, the payload. The first byte chooses the sensor.
+/// Reads consecutive messages without checksums: a line of JSON, two bytes for the payload length,
+/// the payload. The first byte selects the sensor.
 int run_session(const std::uint8_t* bytes, std::size_t size) {
   if (size == 0) return 0;
   const missions::config::MissionSetup& setup = live_setup(bytes[0] == 's');
@@ -137,7 +138,7 @@ int run_session(const std::uint8_t* bytes, std::size_t size) {
   return 0;
 }
 
-/// Poses, lenses and how well poses are known, as people and messages write them.
+/// Reads poses, camera intrinsics and pose uncertainties, as users and messages write them.
 int run_pose(const std::uint8_t* bytes, std::size_t size) {
   const std::string text = bytes_to_string(bytes, size);
   run_reader("pose.txt", [&] {
@@ -159,7 +160,7 @@ int run_pose(const std::uint8_t* bytes, std::size_t size) {
   });
 }
 
-/// Records, one a line.
+/// Reads one record in each line.
 int run_live_journal(const std::uint8_t* bytes, std::size_t size) {
   return run_reader("live.journal", [&] {
     std::vector<std::string> records(1);
@@ -180,7 +181,7 @@ int run_live_journal(const std::uint8_t* bytes, std::size_t size) {
   });
 }
 
-/// A scan as a live survey keeps it.
+/// Reads a scan as stored by a live survey.
 int run_kept_scan(const std::uint8_t* bytes, std::size_t size) {
   return run_reader("scan.ply", [&] {
     const geometry::Scan scan = online::parse_kept_scan("scan.ply", bytes_to_string(bytes, size));

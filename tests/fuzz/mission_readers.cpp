@@ -24,7 +24,7 @@ namespace {
 
 namespace config = missions::config;
 
-/// Numbers that got through are in their keys' ranges, up to the rounding of degrees.
+/// Requires that an accepted number is within the range of its key, up to the rounding of degrees.
 void require_in_range(const config::Key& key, double value) {
   const double slack = 1e-12 * std::abs(value);
   require(value >= key.range.min - slack && value <= key.range.max + slack,
@@ -74,7 +74,7 @@ int run_summary(const std::uint8_t* bytes, std::size_t size) {
   });
 }
 
-/// Names of items lead nowhere but into the campaign's folder.
+/// Run names must not lead outside the campaign's folder.
 int run_campaign(const std::uint8_t* bytes, std::size_t size) {
   namespace batch = missions::batch;
   return run_reader("c.yaml", [&] {
@@ -95,7 +95,7 @@ bool is_on_earth(const missions::wizard::Click& position) {
   return std::abs(position.latitude_deg) <= 90.0 && std::abs(position.longitude_deg) <= 180.0;
 }
 
-/// Results go to a folder of the district's name, and places are on the Earth.
+/// Results go to a folder with the district's name, and positions are on the Earth.
 int run_district(const std::uint8_t* bytes, std::size_t size) {
   namespace batch = missions::batch;
   return run_reader("d.yaml", [&] {
@@ -119,7 +119,7 @@ int run_district(const std::uint8_t* bytes, std::size_t size) {
   });
 }
 
-/// What is made of it is read as the same.
+/// Reads a plan. The plan that is written from it must be read as equal.
 int run_district_plan(const std::uint8_t* bytes, std::size_t size) {
   namespace batch = missions::batch;
   return run_reader(batch::district_plan_name, [&] {
@@ -131,14 +131,14 @@ int run_district_plan(const std::uint8_t* bytes, std::size_t size) {
   });
 }
 
-/// A trial that is damaged counts as not run: there is nothing to refuse.
+/// Reads a trial. A damaged trial counts as not run and is not an error.
 int run_trial(const std::uint8_t* bytes, std::size_t size) {
   const auto path = file_with("trial.json", bytes_to_string(bytes, size));
   missions::batch::finished_trial(path, "");
   return 0;
 }
 
-/// Whatever a journal says, only names within its folder change.
+/// Reads a journal, which must only change files within its folder.
 int run_journal(const std::uint8_t* bytes, std::size_t size) {
   const auto outside = fresh_folder(), folder = outside / "folder";
   std::filesystem::create_directory(folder);

@@ -37,7 +37,7 @@ void require_sane(const site_data::Prior& known) {
   }
 }
 
-/// As parsed, and as a prior at a place of its own.
+/// Reads a file as parsed data and as a prior with its own georeference.
 template <typename Parse>
 int run(const char* name, const std::uint8_t* bytes, std::size_t size, Parse parse) {
   run_reader(name, [&] { require_sane(parse(bytes_to_string(bytes, size))); });
@@ -60,7 +60,7 @@ int run_cityjson(const std::uint8_t* bytes, std::size_t size) {
              [](const std::string& text) { return site_data::parse_cityjson("city.json", text); });
 }
 
-/// An earlier scan, thinned while it is read.
+/// Reads an earlier scan, which is downsampled during reading.
 int run_scan(const char* name, const std::uint8_t* bytes, std::size_t size) {
   return run_reader(name, [&] {
     site_data::Source source;

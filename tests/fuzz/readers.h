@@ -1,9 +1,9 @@
-/// Every reader of files that may come from anyone, as libFuzzer sees it: bytes in, and either a
-/// value that makes sense or one Error. Anything else, such as another exception, a crash, a value
-/// that the reader's header rules out, or an error that does not name the file, is a finding.
+/// All readers of untrusted files as libFuzzer targets: bytes in, and either a valid value or an
+/// Error out. Anything else is a finding: another exception, a crash, a value that the reader's
+/// header excludes, or an error without the file name.
 ///
-/// The bodies are compiled twice: into the corpus test, which replays tests/fuzz/corpus/NAME, and
-/// by clang into the program that tests/fuzz/run lets loose on them.
+/// The targets are compiled twice: for the corpus test, which replays tests/fuzz/corpus/NAME, and
+/// with clang for the fuzzer that tests/fuzz/run starts.
 #pragma once
 
 #include <cstddef>
@@ -15,26 +15,26 @@
 namespace skycap::fuzz {
 
 struct Reader {
-  std::string_view name;  ///< of its corpus, too
-  /// Always 0, as libFuzzer wants it. Throws std::logic_error for a finding.
+  std::string_view name;  ///< also the name of its corpus
+  /// Always returns 0, as libFuzzer requires. Throws std::logic_error for a finding.
   int (*run)(const std::uint8_t* bytes, std::size_t size) = nullptr;
 };
 
 std::span<const Reader> surface_readers();  ///< meshes, clouds, measured free space
-std::span<const Reader> route_readers();    ///< autopilots' files, trajectories, parameters
+std::span<const Reader> route_readers();    ///< mission files, trajectories, parameters
 std::span<const Reader> prior_readers();    ///< city models, earlier scans
 std::span<const Reader> link_readers();     ///< MAVLink, messages of live surveys
 std::span<const Reader> record_readers();   ///< recordings, journals, results
 std::span<const Reader>
 mission_readers();  ///< missions, campaigns, districts, sensors, packages, trials, journals
 
-/// Messages of ROS 2; only where Cyclone DDS is.
+/// Returns the readers of ROS 2 messages. Only available with Cyclone DDS.
 std::span<const Reader> ros2_readers();
 
-/// All of them.
+/// Returns all readers.
 std::vector<Reader> all_readers();
 
-/// The reader of that name; its `run` is null if there is none.
+/// Returns the reader with this name. Its `run` is null if the name is unknown.
 Reader find_reader(std::string_view name);
 
 }  // namespace skycap::fuzz

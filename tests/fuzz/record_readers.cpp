@@ -1,4 +1,4 @@
-// What a program finds in folders that it is pointed at: recordings, journals, results.
+// Files in folders that a user specifies: recordings, journals, results.
 #include <algorithm>
 #include <fstream>
 #include <span>
@@ -33,7 +33,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A journal: what is read of it, and what a writer makes of it.
+/// Reads a journal, and opens it for writing.
 int run_records(const std::uint8_t* bytes, std::size_t size) {
   return run_reader("x.journal", [&] {
     const fs::path file = file_with("x.journal", bytes_to_string(bytes, size));
@@ -48,7 +48,7 @@ int run_records(const std::uint8_t* bytes, std::size_t size) {
   });
 }
 
-/// A survey that is not to go on but for its journal: what it begins with, and then these lines.
+/// Reads the journal of an unfinished survey: the valid first record, followed by these lines.
 int run_survey_journal(const std::uint8_t* bytes, std::size_t size) {
   using namespace missions;
   static const config::MissionSetup setup = config::parse_mission(
@@ -77,7 +77,7 @@ int run_survey_journal(const std::uint8_t* bytes, std::size_t size) {
   });
 }
 
-/// The last record of a scan's journal.
+/// Reads the last record in a scan journal.
 int run_checkpoint(const std::uint8_t* bytes, std::size_t size) {
   return run_reader("scan.journal", [&] {
     using Json = nlohmann::ordered_json;
@@ -91,7 +91,7 @@ int run_checkpoint(const std::uint8_t* bytes, std::size_t size) {
   });
 }
 
-/// The two lists of a TUM sequence, behind each other, between them a line "%".
+/// Reads the two lists of a TUM sequence, separated by a line "%".
 int run_sequence(const std::uint8_t* bytes, std::size_t size) {
   const std::string text = bytes_to_string(bytes, size);
   const std::size_t middle = std::min(text.find("%\n"), size);
@@ -109,8 +109,8 @@ int run_sequence(const std::uint8_t* bytes, std::size_t size) {
   });
 }
 
-/// As MRPT's library reads it in a process of its own, of which libFuzzer sees nothing; and what
-/// that says, which it does see.
+/// Reads a rawlog with the MRPT library in a separate process, which libFuzzer cannot observe, and
+/// parses that process's output, which it can.
 int run_rawlog(const std::uint8_t* bytes, std::size_t size) {
   namespace online = missions::online;
   return run_reader("x.rawlog", [&] {
@@ -126,7 +126,7 @@ int run_rawlog(const std::uint8_t* bytes, std::size_t size) {
   });
 }
 
-/// A depth image, the checksums of its chunks made right.
+/// Reads a depth image after its chunk checksums have been corrected.
 int run_depth_png(const std::uint8_t* bytes, std::size_t size) {
   std::string text = bytes_to_string(bytes, size);
   for (std::size_t at = 8; at + 12 <= text.size();) {
@@ -169,7 +169,7 @@ int run_timetable(const std::uint8_t* bytes, std::size_t size) {
   });
 }
 
-/// The page of results whose figures say this.
+/// Creates the HTML report of results with these figures.
 int run_page(const char* name, const std::uint8_t* bytes, std::size_t size) {
   namespace report = missions::report;
   const fs::path folder = fresh_folder();

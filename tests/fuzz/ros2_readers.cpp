@@ -1,5 +1,5 @@
-// Messages of ROS 2 as DDS hands them on: their counts and lengths are whatever the sender says.
-// Input is a few fields, one behind the other, and then the data.
+// ROS 2 messages as received from DDS. Counts and lengths are those of the sender and may be wrong.
+// The input consists of some consecutive fields and the data.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,7 +19,7 @@
 namespace skycap::fuzz {
 namespace {
 
-/// Takes values off the front of the input; zeros where it has ended.
+/// Extracts values from the beginning of the input. Returns zeros after its end.
 class Front {
  public:
   Front(const std::uint8_t* bytes, std::size_t size) : bytes_(bytes, bytes + size) {}
@@ -33,13 +33,14 @@ class Front {
     return value;
   }
 
-  /// One of several texts.
+  /// Returns one of several strings.
   template <std::size_t count>
   const char* choice(const std::array<const char*, count>& texts) {
     return texts[take<std::uint8_t>() % count];
   }
 
-  /// In a block of its own, so that the address sanitizer sees its end.
+  /// Returns the rest in its own allocation, so that the address sanitiser detects reads beyond its
+  /// end.
   std::vector<std::uint8_t> rest() const {
     return {bytes_.begin() + static_cast<std::ptrdiff_t>(at_), bytes_.end()};
   }
@@ -154,7 +155,7 @@ int run_odometry(const std::uint8_t* bytes, std::size_t size) {
   });
 }
 
-/// Transforms among few frames, so that they meet, and questions between them.
+/// Adds transforms between a few frames, so that they connect, and queries transforms between them.
 int run_transforms(const std::uint8_t* bytes, std::size_t size) {
   constexpr std::array<const char*, 7> names{"map",    "odom", "base_link", "gimbal",
                                              "camera", "",     nullptr};
@@ -175,7 +176,7 @@ int run_transforms(const std::uint8_t* bytes, std::size_t size) {
       const bool is_static = front.take<std::uint8_t>() % 2 == 1;
       try {
         tree.add(transform, is_static);
-      } catch (const Error&) {  // passed over, as the bridge does
+      } catch (const Error&) {  // ignored, as in the bridge
       }
       const std::string target = ros2::printable_text(front.choice(names));
       const std::string source = ros2::printable_text(front.choice(names));

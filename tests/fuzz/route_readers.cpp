@@ -16,7 +16,7 @@ namespace {
 
 const flight::Site site{{51.753458, -1.254022, 111.5}, 46.7};
 
-/// The places of a route, what a vehicle does with it, and how high it returns.
+/// Reads the positions of a route, its interpretation and its return altitude.
 int run_route(const char* name, const std::uint8_t* bytes, std::size_t size) {
   return run_reader(name, [&] {
     const auto path = file_with(name, bytes_to_string(bytes, size));
@@ -33,7 +33,7 @@ int run_route(const char* name, const std::uint8_t* bytes, std::size_t size) {
   });
 }
 
-/// Also what a simulated scan makes of it.
+/// Reads a route and prepares a simulated scan along it.
 int run_scan_route(const char* name, const std::uint8_t* bytes, std::size_t size) {
   return run_reader(name, [&] {
     const auto path = file_with(name, bytes_to_string(bytes, size));

@@ -50,7 +50,7 @@ int run_e57(const std::uint8_t* bytes, std::size_t size) {
                    sealed.size());
 }
 
-/// What is read and written again is read as the same.
+/// Reads measured free space. When it is written and read again it must be equal.
 int run_free_space(const std::uint8_t* bytes, std::size_t size) {
   return run_reader("free_space.bin", [&] {
     std::istringstream stream(bytes_to_string(bytes, size));

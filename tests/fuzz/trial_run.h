@@ -1,4 +1,4 @@
-/// What the bodies of readers share: a file to read from, and what a reader may do.
+/// Common parts of the readers: input files and allowed results.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace skycap::fuzz {
 
-/// Throws std::logic_error: a finding.
+/// Throws std::logic_error, which is a finding, if `holds` is false.
 inline void require(bool holds, const std::string& what) {
   if (!holds) throw std::logic_error(what);
 }
@@ -21,7 +21,7 @@ inline std::string bytes_to_string(const std::uint8_t* bytes, std::size_t size) 
   return {reinterpret_cast<const char*>(bytes), size};
 }
 
-/// Runs a reader that may refuse its input by an Error whose message holds `name`.
+/// Runs a reader that may reject its input with an Error whose message contains `name`.
 template <typename Read>
 int run_reader(std::string_view name, Read read) {
   try {
@@ -33,14 +33,14 @@ int run_reader(std::string_view name, Read read) {
   return 0;
 }
 
-/// A folder of this process, made anew by each call.
+/// Returns a folder of this process, which each call empties.
 std::filesystem::path fresh_folder();
 
-/// The path of a file of that name with these bytes, in a folder of this process.
+/// Returns the path of a file with this name and these bytes, in a folder of this process.
 std::filesystem::path file_with(std::string_view name, std::string_view bytes);
 
-/// An E57 file with checksums that agree, whatever was changed: else nothing behind them would be
-/// read.
+/// Returns an E57 file with valid page checksums for any content. Otherwise the data behind them
+/// would not be read.
 std::string sealed_e57(const std::string& pages);
 
 }  // namespace skycap::fuzz

@@ -1,6 +1,6 @@
-# Fails if what `cmake --install` leaves cannot be moved, linked and run: installs BUILD into FOLDER,
-# moves it, builds every example against it with the named component alone, and runs them; compiles
-# each public header by itself, and runs the example of each. Run by ctest with BUILD, SOURCE, FOLDER,
+# Checks that the result of `cmake --install` can be moved, linked and run. Installs BUILD into
+# FOLDER, moves it, builds each example against the required component only, and runs it. Compiles
+# each public header on its own and runs its example. Run by ctest with BUILD, SOURCE, FOLDER,
 # GENERATOR and COMPILER.
 function(run result)
   execute_process(COMMAND ${ARGN} WORKING_DIRECTORY ${FOLDER}
@@ -18,7 +18,7 @@ run(log ${CMAKE_COMMAND} --install ${BUILD} --prefix ${FOLDER}/installed)
 file(RENAME ${FOLDER}/installed ${FOLDER}/moved)
 set(skycap ${FOLDER}/moved/bin/skycap)
 
-# Builds the project in a folder; what of `absent` it asks for makes that fail.
+# Builds the project in a folder. find_package() calls for the packages in `absent` fail.
 function(build_against_installed name source)
   set(absent "")
   foreach(package IN LISTS ARGN)
@@ -45,12 +45,12 @@ set(heavy PCL MRPT mrpt-maps ompl CGAL OpenSSL fmt yaml-cpp CLI11 nlohmann_json)
 build_against_installed(own_sensor ${SOURCE}/examples/own_sensor ${heavy} Ceres embree)
 expect_output(own_sensor "views, [0-9]+ points, (9[0-9]|100)[.][0-9] % believed covered\n$")
 build_against_installed(certify_route ${SOURCE}/examples/certify_route ${heavy} embree)
-# Only the third leg is too near: it crosses the roof, which is 30 m high, at 31 m.
+# Only the third leg violates the clearance: it crosses the roof, which is 30 m high, at 31 m.
 expect_output(certify_route "^leg 2: 1[.]000 m from [^\n]*\n3 of 4 legs keep 2 m\n$")
 build_against_installed(simulate_lidar ${SOURCE}/examples/simulate_lidar ${heavy} Ceres)
 expect_output(simulate_lidar "^[1-9][0-9]* returns of 80000 shots\n$")
 
-# Each public header by itself.
+# Compiles each public header on its own.
 file(GLOB headers RELATIVE ${FOLDER}/moved/include ${FOLDER}/moved/include/skycap/*/*.h)
 foreach(header IN LISTS headers)
   string(MAKE_C_IDENTIFIER ${header} name)
@@ -74,7 +74,7 @@ file(WRITE ${FOLDER}/alone/CMakeLists.txt "
 ")
 build_against_installed(headers_alone ${FOLDER}/alone)
 
-# Each has an example, and what it gives is what it says.
+# Each public header has an example, whose output must match its comment.
 foreach(header IN LISTS headers)
   string(REGEX REPLACE "^skycap/(.+)[.]h$" "${SOURCE}/examples/headers/\\1.cpp" example ${header})
   if(NOT EXISTS ${example})
@@ -85,7 +85,7 @@ build_against_installed(headers ${SOURCE}/examples/headers)
 list(LENGTH headers count)
 expect_output(headers "^${count} of ${count} examples hold\n$")
 
-# Nothing says where it was built, and the program finds its plug-ins.
+# No file contains the build folder, and the program finds its plug-ins.
 file(GLOB_RECURSE files ${FOLDER}/moved/include/* ${FOLDER}/moved/*.cmake)
 foreach(file IN LISTS files)
   file(READ ${file} text)

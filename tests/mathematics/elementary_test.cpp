@@ -22,7 +22,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// A number of `bits` bits of MPFR's.
+/// An MPFR number with `bits` bits.
 class Exact {
  public:
   static constexpr mpfr_prec_t bits = 300;
@@ -35,10 +35,10 @@ class Exact {
   mpfr_t value;
 };
 
-// The distance of `computed` from the true value in units in the last place of a double near it.
+// Returns the error of `computed` in units in the last place of the nearest double.
 double error_in_ulp(double computed, const Exact& exact) {
   const double nearest = mpfr_get_d(exact.value, MPFR_RNDN);
-  if (computed == nearest) return 0.0;  // so far as it matters: half an ulp
+  if (computed == nearest) return 0.0;  // correctly rounded: the error is at most 0.5 ulp
   if (std::isnan(computed) || std::isinf(nearest)) return infinity;
   const double toward_zero = std::nextafter(std::abs(nearest), 0.0);
   const double ulp = std::max(std::abs(nearest) - toward_zero, 0x1p-1074);
@@ -54,15 +54,15 @@ struct Function {
   const char* name;
   UnaryFunction computed;
   ExactUnaryFunction exact;
-  double min, max;  // magnitudes of arguments, spread evenly over exponents
-  double bound;     // ulp
+  double min, max;  // magnitudes of arguments, uniform in the exponent
+  double bound;     // [ulp]
 };
 // NOLINTNEXTLINE(readability-identifier-naming): gtest looks for it
 void PrintTo(const Function& function, std::ostream* out) { *out << function.name; }
 
 class Elementary : public testing::TestWithParam<Function> {};
 
-// The independent twin is MPFR, over all magnitudes and, twice as often, near one.
+// MPFR is the independent reference, for all magnitudes and, twice as often, near 1.
 TEST_P(Elementary, MatchesMpfr) {
   const Function& function = GetParam();
   std::mt19937_64 random(1);
@@ -116,7 +116,7 @@ INSTANTIATE_TEST_SUITE_P(All, Elementary,
                                          Function{"erf", erf, mpfr_erf, 1e-300, 1e308, 2.0}),
                          [](const auto& instance) { return std::string(instance.param.name); });
 
-// Of two arguments, of all magnitudes against one another.
+// Functions of two arguments, with all combinations of magnitudes.
 TEST(Elementary, MatchesMpfrForPowAndAtan2) {
   std::mt19937_64 random(2);
   std::uniform_real_distribution<double> exponent(-300.0, 300.0), near(-8.0, 8.0);
@@ -142,8 +142,8 @@ TEST(Elementary, MatchesMpfrForPowAndAtan2) {
   EXPECT_LT(worst_power, 0.6);
 }
 
-// The hardest arguments for the reduction by pi / 2 (J.-M. Muller, Elementary Functions, 11.3.2:
-// the double nearest to a multiple of it), and powers of two around it.
+// The hardest arguments for the reduction by pi / 2: the double closest to a multiple of it (J.-M.
+// Muller, Elementary Functions, 11.3.2) and nearby powers of two.
 TEST(Elementary, ReducesAnglesNearMultiplesOfQuarterTurn) {
   std::vector<double> angles = {6381956970095103.0 * 0x1p797, 0x1.6ac5b262ca1ffp+849};
   for (int quarters = 1; quarters < 3000; ++quarters) {
@@ -164,7 +164,7 @@ TEST(Elementary, ReducesAnglesNearMultiplesOfQuarterTurn) {
   }
 }
 
-// What has an exact answer gives it.
+// Arguments with exact results give these results.
 TEST(Elementary, ReturnsExactResultsExactly) {
   for (int n = -1074; n < 1024; ++n) {
     EXPECT_EQ(exp2(n), std::ldexp(1.0, n));
@@ -292,7 +292,8 @@ TEST(Elementary, ReturnsSpecialValuesOfC17) {
   EXPECT_TRUE(std::isnan(atan2(nan, 2.0)) && std::isnan(atan2(2.0, nan)));
 }
 
-// What the program and the libraries in it call under a name in C: found first by the loader.
+// The loader finds these functions first when the program or its libraries call the C functions by
+// name.
 TEST(Elementary, ReplacesTheCFunctions) {
   std::mt19937_64 random(4);
   std::uniform_real_distribution<double> argument(0.1, 0.9);
@@ -353,7 +354,7 @@ TEST(Elementary, ReplacesTheCFunctions) {
     ASSERT_TRUE(is_same(std::pow(x, y), pow(x, y)));
     ASSERT_TRUE(is_same(std::atan2(y, x), atan2(y, x)));
     ASSERT_TRUE(is_same(std::acosh(1.0 + x), acosh(1.0 + x)));
-    double sine = x, cosine = 0.0;  // the argument may lie where the results go
+    double sine = x, cosine = 0.0;  // the output may overwrite the argument
     ::sincos(sine, &sine, &cosine);
     ASSERT_TRUE(is_same(sine, sin(x)) && is_same(cosine, cos(x)));
     const auto single = static_cast<float>(x), other = static_cast<float>(y);

@@ -1,4 +1,5 @@
-/// What the compiler has to leave as it is written, because results are to be the same everywhere.
+/// Operations that the compiler must not change, because results have to be identical on all
+/// platforms.
 #include <array>
 
 #include <gtest/gtest.h>
@@ -11,7 +12,8 @@ struct Rounded {
   std::array<double, 2> wide;
 };
 
-/// As points are stored and used at once: a block that a vectoriser likes to join.
+/// Rounds as points are stored and used immediately afterwards. Vectorisers tend to merge such a
+/// block.
 [[gnu::noinline]] void round(const std::array<double, 2>& given, Rounded& rounded) {
   const auto x = static_cast<float>(given[0]);
   const auto y = static_cast<float>(given[1]);

@@ -1,4 +1,4 @@
-/// Ctrl-C at a certain moment of a verb.
+/// Simulates Ctrl-C at a defined moment of a command.
 #pragma once
 
 #include <sstream>
@@ -8,7 +8,7 @@
 
 namespace skycap::tests {
 
-/// A terminal at which somebody types Ctrl-C when the progress line shows a text.
+/// Terminal that sends Ctrl-C when the progress line contains a text.
 class CtrlC : public std::stringbuf {
  public:
   explicit CtrlC(std::string at) : at_(std::move(at)) {}

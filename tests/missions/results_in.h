@@ -1,4 +1,4 @@
-/// What a run leaves, to be compared with what another one left.
+/// Results of a run, for comparison with those of another run.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,8 @@
 
 namespace skycap::tests {
 
-/// Contents by name, but for files that differ from run to run; folders are there or not.
+/// Returns the contents by name, except for files that differ between runs. Of folders it contains
+/// the names only.
 inline std::map<std::string, std::string> results_in(const std::filesystem::path& folder,
                                                      const std::vector<std::string>& varying) {
   std::map<std::string, std::string> results;

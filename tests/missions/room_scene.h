@@ -1,4 +1,4 @@
-/// A room with a door for tests of where a sensor can get to.
+/// Room with a door, for tests of reachable space.
 #pragma once
 
 #include "geometry/surfaces/mesh.h"
@@ -7,14 +7,14 @@
 namespace skycap::tests {
 
 struct Room {
-  double width = 20.0;  ///< of the square floor, inside [m]
+  double width = 20.0;  ///< inner side of the square floor [m]
   double height = 10.0;
   double wall = 0.5;
-  double door_width = 0.0;  ///< in the middle of the wall towards -y, from the floor up
+  double door_width = 0.0;  ///< in the middle of the wall towards -y, from the floor upwards [m]
   double door_height = 0.0;
 };
 
-/// Closed solids: base, roof and walls round the origin; the floor inside is z = 0.
+/// Returns closed solids: base, roof and walls around the origin. The floor inside is at z = 0.
 inline geometry::Mesh room_mesh(const Room& room) {
   const double in = 0.5 * room.width, out = in + room.wall, top = room.height;
   const double door = 0.5 * room.door_width;

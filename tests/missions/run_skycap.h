@@ -1,4 +1,4 @@
-/// The program run in the test's own process.
+/// Runs the program in the test's process.
 #pragma once
 
 #include <filesystem>
@@ -26,13 +26,13 @@ inline ProgramRun run_skycap(const std::vector<std::string>& arguments,
   return {exit_code, out.str(), err.str()};
 }
 
-/// A temporary folder whose paths are text, as on a command line.
+/// Temporary folder with paths as strings, as on a command line.
 class TestFolder {
  public:
   const std::filesystem::path& path() const { return folder_.path(); }
   std::string operator/(const std::string& name) const { return (path() / name).string(); }
 
-  /// Writes a file into the folder; returns its path.
+  /// Writes a file into the folder and returns its path.
   std::string write(const std::string& name, const std::string& content) const {
     return folder_.file(name, content).string();
   }
@@ -48,8 +48,8 @@ inline std::string read_content(const std::filesystem::path& file) {
   return content.str();
 }
 
-/// A survey of the teapot that takes a tenth of a second: a coarse sensor and coarse densities.
-/// The noise is of the size of the resolution radius, so that there are frontiers.
+/// Returns a survey of a teapot that takes 0.1 s, with a coarse sensor and low densities. The noise
+/// is of the order of the resolution radius, so that there are frontiers.
 inline std::string quick_mission(const std::string& more = "") {
   return "scene: {model: 'builtin:teapot', longest_side: 1.0}\n"
          "sensor: {width: 160, height: 100, noise: {sigma: 0.03}}\n"

@@ -1,13 +1,13 @@
-/// A mission with a vehicle that is quick to survey.
+/// Missions with a vehicle that are surveyed quickly.
 #pragma once
 
 #include <string>
 
 namespace skycap::tests {
 
-/// A mission round a scene, whose surface and unknown space are in a box from `south_west` to
-/// `north_east_top`. The pad is so far away that DJI's vehicles, too, climb before they return from
-/// behind it.
+/// Returns a mission around a scene. Its surface and unknown space are in a box from `south_west`
+/// to `north_east_top`. The pad is so far away that DJI vehicles climb before they return from
+/// behind the scene.
 inline std::string flight_mission_around(const std::string& scene, const std::string& south_west,
                                          const std::string& north_east_top) {
   return "scene: " + scene +
@@ -34,8 +34,8 @@ inline std::string flight_mission_around(const std::string& scene, const std::st
          "limits: {max_views: 14}\n";
 }
 
-/// A teapot of 20 m, which takes a second to survey. Its spout and handle are what nobody sees from
-/// the first view.
+/// Returns a mission with a teapot of 20 m, surveyed in 1 s. Its spout and handle are not visible
+/// from the first view.
 inline std::string flight_mission(const std::string& more = "") {
   return flight_mission_around("{model: 'builtin:teapot', longest_side: 20.0, ground: true}",
                                "-14, -11", "14, 11, 13") +

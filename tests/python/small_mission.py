@@ -1,4 +1,4 @@
-"""A mission that is surveyed in a second, and the program, for the tests of this folder."""
+"""A mission that is surveyed in one second, and the program, for the tests in this folder."""
 
 import os
 import pathlib
@@ -43,7 +43,7 @@ class SmallMission(unittest.TestCase):
 
 
 def box(half_width, half_depth, height):
-    """A closed mesh that stands on z = 0."""
+    """Returns a closed mesh of a box on the plane z = 0."""
     corners = [(x * half_width, y * half_depth, z * height)
                for z in (0, 1) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
     sides = [(3, 2, 1, 0), (4, 5, 6, 7)] + [

@@ -1,4 +1,4 @@
-"""What the module says of itself, and the parts that are no survey."""
+"""Metadata of the module, and its functions other than surveys."""
 
 import ast
 import ctypes
@@ -30,7 +30,7 @@ class Module(unittest.TestCase):
             return ctypes.cast(library[function], ctypes.c_void_p).value
 
         module, libm = ctypes.CDLL(_skycap.__file__), ctypes.CDLL("libm.so.6")
-        for function in ("sin", "exp", "powf"):  # what it showed would be found before libm's
+        for function in ("sin", "exp", "powf"):  # exported functions would take precedence over those of libm
             self.assertEqual(address(module, function), address(libm, function), function)
 
     def test_documents_everything(self):
@@ -129,7 +129,7 @@ class Scans(SmallMission):
         returns = np.concatenate(list(skycap.scan(self.load())))
         self.assertEqual(struct.unpack_from("<Q", header, 247)[0], len(returns))
         most_x, least_x, most_y, least_y, most_z, least_z = struct.unpack_from("<6d", header, 179)
-        # LAS keeps multiples of a millimetre or less.
+        # LAS stores multiples of 1 mm or less.
         self.assertLess(np.abs(returns["xyz"].max(0) - (most_x, most_y, most_z)).max(), 1e-3)
         self.assertLess(np.abs(returns["xyz"].min(0) - (least_x, least_y, least_z)).max(), 1e-3)
         self.assertTrue((np.diff(returns["time"]) >= 0).all())
@@ -194,7 +194,7 @@ class Evaluations(unittest.TestCase):
         found = skycap.evaluate(points, sheet, distance=0.01)
         self.assertAlmostEqual(found.mean, 0.003, places=7)
         self.assertAlmostEqual(found.largest, 0.003, places=7)
-        # Half of the sheet, and as much beyond as the distance reaches there: sqrt(0.01^2 - 0.003^2)
+        # Half of the sheet, plus the reach of the distance beyond it: sqrt(0.01^2 - 0.003^2)
         self.assertAlmostEqual(found.coverage, 0.5 + 0.0095, delta=0.002)
         self.assertAlmostEqual(found.area, 1.0)
         self.assertAlmostEqual(found.density, len(points))

@@ -1,4 +1,4 @@
-"""What the planner takes from arrays of others, and how it shows its own."""
+"""Arrays as input of the planner, and arrays that refer to its data."""
 
 import gc
 import tracemalloc
@@ -21,7 +21,7 @@ evaluation: {coverage_distance: 0.05}
 
 
 def measure_ball(camera, view):
-    """A simulator of somebody else's: rays on the unit ball around the origin."""
+    """External simulator: casts rays at the unit ball around the origin."""
     pose = view.pose()
     rays = camera.rays().reshape(-1, 3) @ pose[:3, :3].T
     rays /= np.linalg.norm(rays, axis=1, keepdims=True)
@@ -34,7 +34,7 @@ def measure_ball(camera, view):
 
 
 def ball_mesh(rings):
-    """The unit ball, cut along `rings` circles of latitude and twice as many meridians."""
+    """Returns the unit ball with `rings` circles of latitude and twice as many meridians."""
     latitude, longitude = np.meshgrid(np.linspace(-np.pi / 2, np.pi / 2, rings + 1),
                                       np.linspace(0, 2 * np.pi, 2 * rings, endpoint=False),
                                       indexing="ij")
@@ -103,7 +103,7 @@ class Arrays(SmallMission):
         points, pose, pixels = self.scan
         def peak(*scan):
             planner = skycap.Planner(self.mission)
-            tracemalloc.start()  # numpy tells it what its arrays take
+            tracemalloc.start()  # numpy reports the memory of its arrays to tracemalloc
             try:
                 planner.next_view(*scan)
                 return tracemalloc.get_traced_memory()[1]

@@ -1,4 +1,4 @@
-"""Surveys from Python are those of the program, to the last bit."""
+"""Surveys from Python are bitwise equal to those of the program."""
 
 import concurrent.futures
 import subprocess
@@ -66,7 +66,7 @@ class WholeSurvey(SmallMission):
         ran = subprocess.run([sys.executable, "-c", script, self.file, out], check=False)
         self.assertEqual(ran.returncode, 7)
         self.assertIn('"interrupted"', (out / "summary.json").read_text())
-        # Columns' names and the first view; the one that was being planned may be there, too.
+        # Header, the first view, and possibly the view that was being planned.
         self.assertLessEqual(len((out / "views.csv").read_text().splitlines()), 3)
 
 
@@ -109,7 +109,7 @@ class OwnLoop(SmallMission):
         with concurrent.futures.ThreadPoolExecutor(4) as pool:
             calls = [pool.submit(planner.next_view, *scan) for _ in range(4)]
         self.assertEqual([call.exception() for call in calls], 4 * [None])
-        self.assertEqual(set(planner.cloud().views.tolist()), {0})  # the others brought nothing new
+        self.assertEqual(set(planner.cloud().views.tolist()), {0})  # the other views added no points
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-/// Rays in packets, for tests.
+/// Ray packets for tests.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,7 +7,7 @@
 
 namespace skycap::sim {
 
-/// Puts a ray into a lane; origin and direction are in the world.
+/// Puts a ray into a lane. Origin and direction are in the world frame.
 inline void aim(RayPacket& packet, int lane, const Scene& scene, const Eigen::Vector3d& origin,
                 const Eigen::Vector3d& towards) {
   const Eigen::Vector3f local = (origin - scene.trees().centre).cast<float>();

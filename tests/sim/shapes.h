@@ -1,4 +1,4 @@
-/// Meshes with closed-form answers, for the simulator's tests.
+/// Meshes with closed-form results, for the tests of the simulator.
 #pragma once
 
 #include <cmath>
@@ -12,7 +12,7 @@
 
 namespace skycap::sim {
 
-/// Two triangles: a square of `size` metres around `centre`, its normal `normal`.
+/// Returns two triangles that form a square of `size` metres around `centre` with this normal.
 inline geometry::Mesh square(const Eigen::Vector3d& centre, const Eigen::Vector3d& normal,
                              double size) {
   const Eigen::Vector3d u = 0.5 * size * geometry::any_orthogonal(normal.normalized());
@@ -20,7 +20,7 @@ inline geometry::Mesh square(const Eigen::Vector3d& centre, const Eigen::Vector3
   return {{centre - u - v, centre + u - v, centre + u + v, centre - u + v}, {{0, 1, 2}, {0, 2, 3}}};
 }
 
-/// The closed surface of a cube with edges of `size` metres.
+/// Returns the closed surface of a cube with edges of `size` metres.
 inline geometry::Mesh cube(const Eigen::Vector3d& centre, double size) {
   geometry::Mesh mesh;
   for (int corner = 0; corner < 8; ++corner) {
@@ -33,8 +33,8 @@ inline geometry::Mesh cube(const Eigen::Vector3d& centre, double size) {
   return mesh;
 }
 
-/// A closed sphere, its vertices exactly on it: an octahedron, each triangle split in four `splits`
-/// times.
+/// Returns a closed sphere with its vertices on the exact sphere: an octahedron whose triangles are
+/// split into four `splits` times.
 inline geometry::Mesh sphere(const Eigen::Vector3d& centre, double radius, int splits) {
   geometry::Mesh mesh{
       {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}},

@@ -1,4 +1,4 @@
-/// Triangles that nothing is known of, and single rays at them.
+/// Random triangles and single rays.
 #pragma once
 
 #include <cstddef>
@@ -26,7 +26,7 @@ inline RTCDevice device() {
   return only.get();
 }
 
-/// Triangles with their coordinates as they are.
+/// Triangles with unchanged coordinates.
 class Triangles {
  public:
   explicit Triangles(const geometry::Mesh& mesh)
@@ -57,8 +57,8 @@ inline Eigen::Vector3f random_point(std::mt19937_64& random, float size) {
   return {x, y, z};
 }
 
-/// Triangles of all kinds: large, small, thin, flat along an axis, some twice. The first, which no
-/// ray hits, makes the extent of a scene with any of the others that of the whole.
+/// Returns triangles of all kinds: large, small, thin, axis-parallel, and duplicates. The first one
+/// is never hit. With it, a scene with any other triangle has the extent of the whole soup.
 inline geometry::Mesh random_soup(std::mt19937_64& random, std::size_t count) {
   geometry::Mesh mesh{{{12, 12, 12}}, {{0, 0, 0}}};
   std::uniform_int_distribution<int> kind(0, 4);
@@ -67,7 +67,7 @@ inline geometry::Mesh random_soup(std::mt19937_64& random, std::size_t count) {
     const Eigen::Vector3f a = random_point(random, 4.0F);
     Eigen::Vector3f b = a + random_point(random, what == 0 ? 6.0F : 0.5F);
     Eigen::Vector3f c = a + random_point(random, what == 0 ? 6.0F : 0.5F);
-    if (what == 1) c = a + 0.7F * (b - a) + random_point(random, 1e-6F);  // next to a line
+    if (what == 1) c = a + 0.7F * (b - a) + random_point(random, 1e-6F);  // nearly degenerate
     if (what == 2) b.z() = c.z() = a.z();
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
     for (const Eigen::Vector3f& corner : {a, b, c})

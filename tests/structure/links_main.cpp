@@ -1,3 +1,3 @@
-// The program of a link test: it does nothing, and links only if the library under test needs
-// nothing from the libraries above it (missions/CMakeLists.txt).
+// Program of a link test. It does nothing, and links only if the library under test needs nothing
+// from higher libraries (missions/CMakeLists.txt).
 int main() {}

@@ -1,6 +1,5 @@
-// Which folder may include which: the same table as in docs/development/architecture.md. Between
-// libraries the linker keeps to it, too (the tests links/NAME); within a library this test alone
-// does.
+// Allowed includes between folders, as in docs/development/architecture.md. Between libraries the
+// linker checks them as well (tests links/NAME). Within a library, only this test does.
 
 #include <fstream>
 #include <map>
@@ -22,7 +21,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// The rows, each with all that it may use; "geometry" and its rooms are open to every room.
+/// Returns the allowed includes of each module. All modules may include "geometry" and its modules.
 Modules architecture() {
   const std::vector<std::string> geometry = {
       "geometry",          "geometry/pose", "geometry/points", "geometry/spherical_cap",
@@ -83,16 +82,18 @@ Modules architecture() {
                  "flight/rtl", "flight/route", "flight/export", "flight/interpreter",
                  "flight/monte_carlo", "flight/fleet"});
 
-  std::map<std::string, std::vector<std::string>> modules_in;  // of each library below missions/
+  // Modules of each library below missions/.
+  std::map<std::string, std::vector<std::string>> modules_in;
   for (const auto& [module_name, others] : modules) {
     modules_in[module_name.substr(0, module_name.find('/'))].push_back(module_name);
   }
-  // A library of missions/ by its folders, each of which may use those before it; the libraries
-  // outside of missions/ that it uses besides geometry; and those of missions/ below it.
+  // Adds a library of missions/ with its folders, each of which may use the previous ones.
+  // `outside` are the libraries outside missions/ that it uses in addition to geometry, `inside`
+  // those of missions/.
   const auto add_library = [&](const std::vector<std::string>& folders,
                                const std::vector<std::string>& outside,
                                const std::vector<std::string>& inside) {
-    std::vector<std::string> all{"missions"};  // version.h alone
+    std::vector<std::string> all{"missions"};  // version.h only
     for (const std::string& library : outside) {
       all.insert(all.end(), modules_in[library].begin(), modules_in[library].end());
     }
@@ -143,7 +144,7 @@ Modules architecture() {
   add_library({"cli", "cli/clouds"}, {"sim", "survey", "flight"},
               {"report", "batch", "photo", "wizard", "package", "photos", "config", "online",
                "scan", "simulation", "evaluation", "session", "scene", "site_data", "support"});
-  // As a user of the library: public headers.
+  // Like a user of the library: public headers only.
   add("python",
       {"sim/models", "sim/sensors", "survey", "flight/clearance", "flight/route", "missions/api"});
   return modules;
@@ -154,7 +155,7 @@ std::vector<SourceFile> product() {
                       {"geometry", "sim", "survey", "flight", "missions", "python"});
 }
 
-/// With what stands beside the house.
+/// Returns the product sources and those of other folders.
 std::vector<SourceFile> all_sources() {
   return read_sources(SKYCAP_SOURCE_DIR, {"mathematics", "geometry", "sim", "survey", "flight",
                                           "missions", "python", "library", "clients", "tests"});
@@ -176,17 +177,17 @@ TEST(Sources, DrawRandomNumbersInDefinedOrder) {
   EXPECT_THAT(unordered_draws(SKYCAP_SOURCE_DIR, all_sources()), IsEmpty());
 }
 
-/// A mesh is the truth; points measured of it are not.
+/// Meshes are ground truth. Measured points are not.
 TEST(Modules, HideGroundTruthFromPlanners) {
   for (const SourceFile& source : testing_support::not_empty(product())) {
-    // Photos are planned from prior data, which are meshes.
+    // Photo planning uses prior data, which are meshes.
     if (!source.path.starts_with("survey/") || source.path.starts_with("survey/photo/")) continue;
     EXPECT_THAT(source.own, testing::Not(testing::Contains(HasSubstr("surfaces/mesh"))))
         << source.path;
   }
 }
 
-/// A tree of two rooms, upper and lower, with whatever fault a test plants.
+/// A tree with an upper and a lower module, in which each test plants a fault.
 class ArchitectureCheck : public testing::Test {
  protected:
   void write(const std::string& path, const std::string& text) {

@@ -21,7 +21,7 @@ std::size_t line_at(const std::string& text, std::size_t offset) {
                  text.begin(), text.begin() + static_cast<std::ptrdiff_t>(offset), '\n'));
 }
 
-/// Where a comment or quoted text that begins at `i` ends; `i` if none does.
+/// Returns the end of a comment or quoted text that begins at `i`, or `i` if there is none.
 std::size_t find_words_end(const std::string& text, std::size_t i) {
   const auto after = [&](std::string_view mark, std::size_t from) {
     const std::size_t found = text.find(mark, from);
@@ -48,7 +48,7 @@ struct Arguments {
   std::vector<std::string> texts;
 };
 
-/// The arguments of every pair of parentheses, at their own depth.
+/// Returns the arguments in each pair of parentheses, without nested ones.
 std::vector<Arguments> argument_lists(const std::string& code) {
   struct Open {
     char bracket;
@@ -74,7 +74,8 @@ std::vector<Arguments> argument_lists(const std::string& code) {
   return lists;
 }
 
-/// A distribution that is handed a generator, or a generator that is asked.
+/// Returns true if the argument draws a random number: a generator is passed to a distribution, or
+/// called.
 bool draws(const std::string& argument) {
   static const std::regex draw(R"(\w\((random|generator|engine|dice|draws?)\b\s*[,)])"
                                R"(|\b(random|generator|engine|dice|draws?)(\.\w+)?\s*\()");

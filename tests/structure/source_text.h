@@ -1,5 +1,4 @@
-/// What can be told from a source's text without a compiler: draws of random numbers whose order is
-/// the compiler's to choose.
+/// Checks on source text without a compiler: random draws in unspecified order.
 #pragma once
 
 #include <string>
@@ -9,11 +8,12 @@
 
 namespace skycap::structure {
 
-/// The text with spaces for comments, directives and what stands in quotes; lines stay.
+/// Returns the text with comments, directives and quoted text replaced by spaces. Line breaks are
+/// kept.
 std::string strip_comments(const std::string& text);
 
-/// One line for each call whose arguments hold two draws of random numbers: compilers take
-/// arguments of a call in any order, those within braces from left to right.
+/// Returns one line for each call with two random draws in its arguments. Compilers evaluate
+/// arguments in any order, except within braces, where the order is left to right.
 std::vector<std::string> unordered_draws(const std::filesystem::path& root,
                                          const std::vector<SourceFile>& sources);
 

@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What stands between the two characters after "#include "; empty if the line is no include.
+/// Returns the text between the delimiters after "#include ". Empty if the line is not an include.
 std::string included(const std::string& line, char open, char close) {
   const std::string start = std::string("#include ") + open;
   if (!line.starts_with(start)) return "";
@@ -33,7 +33,7 @@ SourceFile read_source(const fs::path& root, const fs::path& file) {
 
 using Graph = std::map<std::string, std::vector<std::string>>;
 
-/// The nodes from which a way leads back to themselves.
+/// Returns the nodes that are part of a cycle.
 std::vector<std::string> nodes_on_circles(const Graph& graph) {
   const auto reached_from = [&](const std::string& start) {
     std::set<std::string> reached;

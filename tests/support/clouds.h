@@ -9,7 +9,7 @@
 
 namespace skycap::tests {
 
-/// Uniform in the cube [-half_edge, half_edge]^3.
+/// Returns points distributed uniformly in the cube [-half_edge, half_edge]^3.
 inline std::vector<Eigen::Vector3f> random_points(std::size_t count, double half_edge,
                                                   std::uint64_t seed) {
   std::mt19937_64 random(seed);
@@ -21,8 +21,8 @@ inline std::vector<Eigen::Vector3f> random_points(std::size_t count, double half
   return points;
 }
 
-/// On the unit sphere with normal noise `sigma` on each coordinate, in the order of a spiral from
-/// the pole: a crude scan.
+/// Returns points on the unit sphere with normal noise `sigma` on each coordinate, ordered along a
+/// spiral from the pole like a simple scan.
 inline std::vector<Eigen::Vector3f> noisy_sphere(std::size_t count, double sigma,
                                                  std::uint64_t seed) {
   std::mt19937_64 random(seed);

@@ -1,4 +1,4 @@
-/// What code says when it refuses its input.
+/// Error messages of the code under test.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace skycap::testing_support {
 
-/// The message of the Error that the action throws; empty if it throws none.
+/// Returns the message of the Error that the action throws, or an empty string.
 template <typename Action>
 std::string thrown_message(const Action& action) {
   try {

@@ -1,5 +1,4 @@
-/// E57 files made by hand, bit by bit: what the reader has to understand, written by code that it
-/// does not share.
+/// E57 files assembled bit by bit. This code is independent of the tested reader.
 #pragma once
 
 #include <array>
@@ -11,7 +10,7 @@
 
 namespace skycap::testing_support {
 
-/// CRC-32C as its definition has it, a bit a step.
+/// Computes CRC-32C according to its definition, one bit at a time.
 inline std::uint32_t slow_crc32c(std::string_view bytes) {
   std::uint32_t sum = 0xFFFFFFFF;
   for (const char byte : bytes) {
@@ -23,7 +22,7 @@ inline std::uint32_t slow_crc32c(std::string_view bytes) {
 
 inline constexpr std::size_t e57_page = 1024, e57_content = 1020;
 
-/// Pages with a checksum each, the last one filled with zeros.
+/// Returns pages with checksums. The last page is padded with zeros.
 inline std::string e57_pages(std::string content) {
   content.resize((content.size() + e57_content - 1) / e57_content * e57_content);
   std::string pages;
@@ -36,7 +35,7 @@ inline std::string e57_pages(std::string content) {
   return pages;
 }
 
-/// Without the checksums.
+/// Returns the content of the pages without the checksums.
 inline std::string extract_e57_content(std::string_view pages) {
   std::string content;
   for (std::size_t begin = 0; begin < pages.size(); begin += e57_page) {
@@ -54,7 +53,7 @@ void append_little_endian(std::string& bytes, Value value) {
   for (std::size_t i = 0; i < sizeof value; ++i) bytes += static_cast<char>(value >> 8 * i & 0xFF);
 }
 
-/// A field of records: its line of XML, and all its bits.
+/// A record field: its XML element and all its bits.
 struct E57Stream {
   std::string xml;
   std::vector<bool> bits;
@@ -78,7 +77,7 @@ inline unsigned count_interval_bits(std::int64_t minimum, std::int64_t maximum) 
   return bits;
 }
 
-/// Integers; `more` is further attributes, such as a scale.
+/// Returns a field of integers. `more` contains further XML attributes, such as a scale.
 inline E57Stream e57_integers(const std::string& name, std::int64_t minimum, std::int64_t maximum,
                               const std::vector<std::int64_t>& values,
                               const std::string& type = "Integer", const std::string& more = "") {
@@ -114,13 +113,13 @@ inline E57Stream e57_singles(const std::string& name, const std::vector<float>& 
 
 struct E57Scan {
   std::vector<E57Stream> streams;
-  std::uint64_t records = 0;  ///< as the file says
-  std::string more = {};      ///< XML beside the points: a pose, limits of colours
-  std::size_t packets = 1;    ///< that each stream is cut into, anywhere
-  bool has_others = false;    ///< an index and an empty packet before each of them
+  std::uint64_t records = 0;  ///< as declared in the file
+  std::string more = {};      ///< additional XML: a pose, colour limits
+  std::size_t packets = 1;    ///< number of packets that each stream is divided into, at any bit
+  bool has_others = false;    ///< adds an index packet and an empty packet before each of them
 };
 
-/// Header of records and packets, from a logical place of the file on.
+/// Returns the section header and the packets, for a section that starts at this logical offset.
 inline std::string e57_section(const E57Scan& scan, std::uint64_t section_begin) {
   std::string packets;
   std::vector<std::string> columns;
@@ -151,7 +150,7 @@ inline std::string e57_section(const E57Scan& scan, std::uint64_t section_begin)
   return section + packets;
 }
 
-/// What begins the file whose logical bytes follow; XML stands at its end.
+/// Returns the file header for the following logical content with the XML at its end.
 inline std::string e57_header(std::uint64_t content_size, std::uint64_t xml_size) {
   std::string header = "ASTM-E57";
   append_little_endian(header, std::uint32_t{1});
@@ -164,7 +163,7 @@ inline std::string e57_header(std::uint64_t content_size, std::uint64_t xml_size
   return header;
 }
 
-/// A file whose XML stands behind these bytes, which have room for the header.
+/// Returns a file with the XML after the content, which has room for the header.
 inline std::string e57_with_xml(std::string content, const std::string& xml) {
   content += xml;
   content.replace(0, 48, e57_header(content.size(), xml.size()));
@@ -190,7 +189,7 @@ inline std::string make_e57(const std::vector<E57Scan>& scans, const std::string
   return e57_with_xml(content, xml + "</data3D></e57Root>\n");
 }
 
-/// One scan of doubles.
+/// Returns a file with one scan of doubles.
 inline std::string make_e57_from_points(const std::vector<std::array<double, 3>>& points,
                                         const std::string& more = "") {
   E57Scan scan;

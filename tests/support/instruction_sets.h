@@ -1,4 +1,4 @@
-/// Doing the same with every vector instruction set.
+/// Runs tests with each vector instruction set.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace skycap {
 
-/// Those that this processor has, from the narrowest to the widest.
+/// Returns the instruction sets of this processor, from the narrowest to the widest.
 inline std::vector<geometry::InstructionSet> instruction_sets() {
   using enum geometry::InstructionSet;
   std::vector<geometry::InstructionSet> all;
@@ -17,7 +17,7 @@ inline std::vector<geometry::InstructionSet> instruction_sets() {
   return all;
 }
 
-/// Limits the process to one, for as long as it lives.
+/// Limits the process to one instruction set during the lifetime of the object.
 class InstructionSetLimit {
  public:
   explicit InstructionSetLimit(geometry::InstructionSet widest)

@@ -1,4 +1,4 @@
-/// For loops of tests over what the code under test has made: without elements nothing is tested.
+/// For test loops over results of the code under test: a loop over no elements would test nothing.
 #pragma once
 
 #include <ranges>
@@ -8,7 +8,7 @@
 
 namespace skycap::testing_support {
 
-/// The range itself; the test fails if it is empty.
+/// Returns the range. The test fails if the range is empty.
 template <std::ranges::range Range>
 Range not_empty(Range&& range) {
   EXPECT_FALSE(std::ranges::empty(range)) << "the loop over it tests nothing";

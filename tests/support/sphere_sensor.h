@@ -1,4 +1,4 @@
-/// A depth camera before spheres, in closed form: what a planner sees without any simulator.
+/// Closed-form depth camera for spheres, for tests of planners without the simulator.
 #pragma once
 
 #include <cmath>
@@ -17,7 +17,7 @@ struct Sphere {
   double radius = 0.5;
 };
 
-/// The scan that a noise-free or noisy depth camera takes of some spheres.
+/// Returns the scan of a depth camera of some spheres, with or without noise.
 inline geometry::Scan scan_spheres(const std::vector<Sphere>& spheres,
                                    const geometry::Camera& camera, const geometry::View& view,
                                    double sigma = 0.0, std::uint64_t seed = 1) {

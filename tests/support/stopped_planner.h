@@ -1,4 +1,4 @@
-/// That a planner can be stopped in the middle of a view.
+/// Checks that a planner can be stopped while it plans a view.
 #pragma once
 
 #include <stop_token>
@@ -9,7 +9,7 @@
 
 namespace skycap::tests {
 
-/// `scan` is the planner's first, and leaves something to look at.
+/// Stops the planner while it plans a view. `scan` is its first scan and leaves frontiers.
 inline void expect_stop_while_planning(survey::Planner& planner, const geometry::Scan& scan) {
   std::stop_source stop;
   planner.stop_on(stop.get_token());

@@ -1,4 +1,4 @@
-/// A folder for one test's files, removed when it goes out of scope.
+/// Folder for the files of one test. It is removed when it goes out of scope.
 #pragma once
 
 #include <filesystem>
@@ -25,7 +25,7 @@ class TemporaryFolder {
 
   const std::filesystem::path& path() const { return path_; }
 
-  /// A file in the folder with these bytes.
+  /// Writes a file with these bytes into the folder and returns its path.
   std::filesystem::path file(std::string_view name, std::string_view bytes) const {
     std::ofstream(path_ / name, std::ios::binary) << bytes;
     return path_ / name;

@@ -22,7 +22,7 @@ using testing::ElementsAre;
 
 View view_at(double x, double z) { return {{x, 0, z}, {1, 0, 0}}; }
 
-/// Proposes the views of a list, one after the other; of a refused one it offers the next.
+/// Planner that proposes the views of a list in order. After a rejection it proposes the next one.
 class ListPlanner final : public Planner {
  public:
   explicit ListPlanner(std::vector<View> views) : views_(std::move(views)) {}
@@ -58,7 +58,7 @@ class ListPlanner final : public Planner {
   PlanningStep step_;
 };
 
-/// Heights are limited in all tests but those of the stand-off.
+/// All tests limit the height, except those of the stand-off.
 const ViewLimits two_to_four{.min_height = 2.0, .max_height = 4.0};
 
 std::unique_ptr<ListPlanner> planner_at_heights(const std::vector<double>& heights) {
@@ -92,7 +92,7 @@ TEST(LimitedPlanner, ProposesOnlyAlternativeViewsWithinLimits) {
   EXPECT_FALSE(planner.next_alternative_view());
 }
 
-// What a scan shows counts from the scan on; what was measured before counts as well.
+// The points of a scan count from that scan on, and earlier points count as well.
 TEST(LimitedPlanner, KeepsStandOffFromAllMeasuredPoints) {
   auto list = std::make_unique<ListPlanner>(std::vector<View>{
       view_at(2.9, 0), view_at(3.1, 0), view_at(3.1, 0), view_at(-0.9, 0), view_at(-1.1, 0)});
@@ -108,7 +108,7 @@ TEST(LimitedPlanner, StopsWithNowhereToGoWhenAllViewsAreRejected) {
   ASSERT_TRUE(planner.next_view(scan));
   EXPECT_FALSE(planner.next_alternative_view());
   EXPECT_EQ(planner.stop_reason(), StopReason::nowhere_to_go);
-  // Nothing was wanted any more, so that nothing was refused either.
+  // The planner proposed no more views, so none was rejected.
   EXPECT_FALSE(planner.next_view(scan));
   EXPECT_EQ(planner.stop_reason(), StopReason::complete);
 }
@@ -126,7 +126,7 @@ TEST(LimitedPlanner, EndsSurveyWithReasonOfItsLimits) {
             StopReason::complete);
 }
 
-// An opening is not the planner's, but its limits are the survey's.
+// An initial pattern does not come from the planner, but the survey limits apply to it.
 TEST(LimitedPlanner, SkipsInitialPatternViewsOutsideLimits) {
   const auto sense = [](const View& view, const Scan&) {
     return Scan{.world_from_sensor = geometry::camera_pose(view), .points = {{0, 0, 0}}};
@@ -139,7 +139,7 @@ TEST(LimitedPlanner, SkipsInitialPatternViewsOutsideLimits) {
   EXPECT_LT((result.views[1].view.position - view_at(2, 4).position).norm(), 1e-12);
 }
 
-// The step is that of the scan, whatever the planner does in search of another view.
+// The step belongs to the last scan, even if the planner then searches for other views.
 TEST(LimitedPlanner, KeepsStepOfLastScan) {
   LimitedPlanner planner(planner_at_heights({1, 5, 3, 2}), two_to_four);
   ASSERT_TRUE(planner.next_view(scan));

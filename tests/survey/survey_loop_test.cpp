@@ -18,7 +18,8 @@ using geometry::Scan;
 using geometry::View;
 using testing::ElementsAre;
 
-/// Wants to be at x = 1, 2, 3, ... up to a last one; of a refused view it offers the next.
+/// Planner that proposes x = 1, 2, 3, ... up to a last position. After a rejection it proposes the
+/// next one.
 class WalkingPlanner final : public Planner {
  public:
   explicit WalkingPlanner(int last) : last_(last) {}
@@ -43,7 +44,7 @@ class WalkingPlanner final : public Planner {
 
 const View start{{0, 0, 0}, {1, 0, 0}};
 
-/// A sensor that returns two points and ends up where it was sent.
+/// Simulates a sensor that reaches each view and returns two points.
 Scan sense(const View& view, const Scan& = {}) {
   return {.world_from_sensor = geometry::camera_pose(view), .points = {{0, 0, 0}, {1, 1, 1}}};
 }
@@ -63,7 +64,7 @@ TEST(SurveyLoop, ContinuesUntilPlannerIsComplete) {
   EXPECT_EQ(result.views.back().returns, 2U);
 }
 
-// Trap T10: the distance starts at the first view and is of straight segments.
+// Trap T10: the distance starts at the first view and is measured along straight segments.
 TEST(SurveyLoop, MeasuresDistanceFromFirstView) {
   WalkingPlanner planner(2);
   const SurveyResult result = run_survey(planner, {{-5, 0, 0}, {1, 0, 0}}, {}, {.sense = sense});
@@ -90,10 +91,10 @@ TEST(SurveyLoop, RequestsAlternativeForUnreachableView) {
   const SurveyResult result =
       run_survey(planner, start, {}, {.sense = sense, .can_reach = odd_positions_only});
   EXPECT_THAT(positions(result), ElementsAre(0, 1, 3));
-  EXPECT_EQ(result.stop_reason, StopReason::nowhere_to_go);  // 4 was wanted, and refused
+  EXPECT_EQ(result.stop_reason, StopReason::nowhere_to_go);  // 4 was proposed and rejected
 }
 
-// The opening comes first; what cannot be reached of it is left out, and the planner goes on.
+// The initial pattern comes first. Its unreachable views are skipped, and the planner continues.
 TEST(SurveyLoop, FliesInitialPatternBeforePlannedViews) {
   WalkingPlanner planner(4);
   const auto view_at = [](double x) { return View{{x, 0, 0}, {1, 0, 0}}; };
@@ -103,12 +104,14 @@ TEST(SurveyLoop, FliesInitialPatternBeforePlannedViews) {
                  {.initial_pattern = {view_at(10), view_at(11), view_at(12)},
                   .sense = sense,
                   .can_reach = not_at_eleven});
-  // The planner was asked after each scan of the opening, and proposed 1 and 2 in vain.
+  // The planner was called after each scan of the initial pattern. Its proposals 1 and 2 were not
+  // used.
   EXPECT_THAT(positions(result), ElementsAre(0, 10, 12, 3, 4));
   EXPECT_EQ(result.stop_reason, StopReason::complete);
 }
 
-/// Takes two milliseconds for a view and five for one in place of it, and books half of the former.
+/// Planner that takes 2 ms for a view and 5 ms for an alternative. It accounts for half of the
+/// former.
 class SlowPlanner final : public Planner {
  public:
   std::optional<View> next_view(const geometry::ScanSpan&) override {
@@ -133,7 +136,7 @@ class SlowPlanner final : public Planner {
   PlanningStep step_;
 };
 
-// Also where views were refused: by the loop itself, or by whoever moves the sensor.
+// Also for rejected views, either by the loop itself or by the function that moves the sensor.
 TEST(SurveyLoop, SplitsPlanningTimeWithoutRemainder) {
   const auto far_only = [](const Vector3d&, const View& to) { return to.position.x() >= 3; };
   SlowPlanner planner;
@@ -150,7 +153,7 @@ TEST(SurveyLoop, SplitsPlanningTimeWithoutRemainder) {
   EXPECT_THAT(parts, ElementsAre("think", "rest", "instead"));
   EXPECT_NEAR(sum, taken.planning_time, 1e-12);
   EXPECT_GE(taken.step.times[1].seconds, 0.001);
-  EXPECT_GE(taken.step.times[2].seconds, 0.015);  // 1 and 2 by the loop, 3 by the caller
+  EXPECT_GE(taken.step.times[2].seconds, 0.015);  // 1 and 2 rejected by the loop, 3 by the caller
 }
 
 TEST(SurveyLoop, StopsBetweenViewsOnRequest) {
@@ -168,7 +171,7 @@ TEST(SurveyLoop, StopsBetweenViewsOnRequest) {
   EXPECT_THAT(positions(result), ElementsAre(0, 1, 2));
 }
 
-/// Is told to stop while it plans from its third scan.
+/// Planner that is stopped while it plans from its third scan.
 class StoppedPlanner final : public Planner {
  public:
   std::optional<View> next_view(const geometry::ScanSpan& scan) override {
@@ -199,7 +202,7 @@ TEST(SurveyLoop, StopsWhilePlanningView) {
   EXPECT_THAT(positions(result), ElementsAre(0, 1));
 }
 
-// Once there is a view to come back with, other views are not asked for to the end.
+// After a stop request, no further views are requested once there is a view to return.
 TEST(SurveyLoop, StopsWhileViewsAreRejected) {
   WalkingPlanner planner(1'000'000'000);
   std::stop_source source;
@@ -221,7 +224,7 @@ TEST(SurveyLoop, StopsWhileViewsAreRejected) {
 
 TEST(SurveyLoop, StopsAtTimeLimit) {
   WalkingPlanner planner(100);
-  // A metre of way and a second a view: places 0, 1 and 2 take 5 s.
+  // 1 m of path and 1 s for each view: positions 0, 1 and 2 take 5 s.
   const SurveyResult result = run_survey(
       planner, start, {.max_time = 5.5, .speed = 1.0, .time_per_view = 1.0}, {.sense = sense});
   EXPECT_EQ(result.stop_reason, StopReason::time_limit);
@@ -242,7 +245,7 @@ TEST(SurveyLoop, ReturnsScanBuffersForReuse) {
   EXPECT_THAT(returned, ElementsAre(nullptr, taken[0], taken[1]));
 }
 
-// A real drone stops where the wind lets it; the pose it reports is what counts.
+// A real drone stops where the wind allows. The reported pose is used.
 TEST(SurveyLoop, UsesPoseThatSensorReached) {
   WalkingPlanner planner(1);
   const auto drift = [](const View& view, const Scan&) {

@@ -39,11 +39,11 @@ TEST(ViewLimits, ForbidByHeightPitchFenceAndNoFlyVolumes) {
   EXPECT_FALSE(limits.allow({{150, 0, 10}, level}));
   EXPECT_TRUE(limits.allow({{100, 0, 10}, level}));  // on the fence
   EXPECT_FALSE(limits.allow({{15, 15, 10}, level}));
-  EXPECT_FALSE(limits.allow({{10, 15, 30}, level}));  // on the volume's edge
+  EXPECT_FALSE(limits.allow({{10, 15, 30}, level}));  // on the edge of the volume
   EXPECT_TRUE(limits.allow({{15, 15, 40}, level}));   // above the volume
 }
 
-// Property: whatever is returned is allowed, at the distance asked for, looking at the target.
+// Property: each returned view is allowed, has the requested distance and looks at the target.
 TEST(ViewLimits, MakeTargetViewsWithinLimits) {
   ViewLimits limits;
   limits.min_height = 2.0;

@@ -5,7 +5,7 @@
 
 #include "example.h"
 
-// A leg 7 m beside a tower is proven, one that crosses its roof at 1 m is not.
+// A leg 7 m from a tower is verified. A leg that crosses its roof at 1 m is not.
 const Example clearance_example("flight/clearance", [] {
   const skycap::flight::Prism tower{"tower", {{-5, -5}, {5, -5}, {5, 5}, {-5, 5}}, 0.0, 30.0};
   const skycap::flight::KnownSpace space({.mesh = skycap::flight::surface(tower)});

@@ -3,7 +3,7 @@
 #include "example.h"
 #include "tower.h"
 
-// A sortie as text in one of the formats, and the places that the text says.
+// Writes a sortie as text in one of the formats, and reads the positions in that text.
 const Example export_example("flight/export", [] {
   const skycap::flight::FlightPlan plan = tower_plan(tower_space());
   const auto geojson = skycap::flight::format_named("geojson");

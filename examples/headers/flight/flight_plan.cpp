@@ -5,7 +5,7 @@
 #include "example.h"
 #include "tower.h"
 
-// The first sortie of a route as a writer of files sees it.
+// Creates the plan of a route's first sortie, the input for all file formats.
 const Example flight_plan_example("flight/flight_plan", [] {
   const skycap::flight::KnownSpace space = tower_space();
   const skycap::flight::Route route = tower_route(space);

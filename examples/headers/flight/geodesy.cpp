@@ -4,7 +4,7 @@
 
 #include "example.h"
 
-// A place in the local frame, on the Earth, and back.
+// Converts a local position to geodetic coordinates and back.
 const Example geodesy_example("flight/geodesy", [] {
   const skycap::flight::LocalFrame frame(
       {.latitude_deg = 51.7534, .longitude_deg = -1.2540, .height = 110.0});

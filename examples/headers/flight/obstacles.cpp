@@ -2,7 +2,8 @@
 
 #include "example.h"
 
-// A tower on the ground, as a surface; and without the ground, for a pad.
+// Creates a site with a tower as a surface mesh on the ground, and the same site without the
+// ground, for the check of a pad.
 const Example obstacles_example("flight/obstacles", [] {
   const skycap::flight::Prism tower{"tower", {{-5, -5}, {5, -5}, {5, 5}, {-5, 5}}, 0.0, 30.0};
   skycap::flight::Obstacles site{.mesh = skycap::flight::surface(tower), .ground_height = 0.0};

@@ -3,7 +3,8 @@
 #include "example.h"
 #include "tower.h"
 
-// From one side of a tower to the other: the way leads around it, and keeps its distance.
+// Plans a route from one side of a tower to the other. It leads around the tower and keeps the
+// clearance.
 const Example route_example("flight/route", [] {
   const skycap::flight::Route route = tower_route(tower_space());
   const double straight = 30.0;  // through the tower

@@ -3,7 +3,7 @@
 
 #include "example.h"
 
-// A vehicle with other figures than the default; what cannot be is refused.
+// Sets the properties of a vehicle. Invalid values are rejected.
 const Example vehicle_example("flight/vehicle", [] {
   skycap::flight::Vehicle vehicle{.name = "survey quad", .radius = 0.4, .max_speed = 8.0};
   vehicle.validate();
@@ -11,7 +11,7 @@ const Example vehicle_example("flight/vehicle", [] {
   try {
     vehicle.validate();
   } catch (const skycap::Error&) {
-    return true;  // and says which value
+    return true;  // the message names the value
   }
   return false;
 });

@@ -3,7 +3,7 @@
 #include "example.h"
 #include "tower.h"
 
-// A file that is written because what it says, read back, keeps its distance.
+// Writes a mission file only if its content, read back, keeps the clearance.
 const Example verified_export_example("flight/verified_export", [] {
   const skycap::flight::KnownSpace space = tower_space();
   const skycap::flight::FlightPlan plan = tower_plan(space);

@@ -2,7 +2,7 @@
 
 #include "example.h"
 
-// Three points and the scans they are from, to a file and back.
+// Writes three points with their scan indices to a file and reads them back.
 const Example cloud_io_example("geometry/cloud_io", [] {
   skycap::geometry::AttributedCloud cloud;
   cloud.positions = {{0, 0, 0}, {1.5F, 0, 0}, {0, 2.5F, 0}};

@@ -5,7 +5,7 @@
 
 #include "example.h"
 
-// What goes wrong is one sentence for the user, and of a kind.
+// An Error contains a one-sentence message for the user and a kind.
 const Example error_example("geometry/error", [] {
   try {
     skycap::geometry::read_mesh("no_such_roof.ply");

@@ -2,7 +2,7 @@
 
 #include "example.h"
 
-// The area of a flat roof, and points spread over it.
+// Computes the area of a flat roof and samples points on it.
 const Example mesh_example("geometry/mesh", [] {
   const skycap::geometry::Mesh roof{{{0, 0, 9}, {8, 0, 9}, {8, 6, 9}, {0, 6, 9}},
                                     {{0, 1, 2}, {0, 2, 3}}};

@@ -3,7 +3,7 @@
 
 #include "example.h"
 
-// Over a roof, beside it, and whether a way keeps away from it.
+// Computes distances above a roof and next to it, and checks that a path keeps a distance from it.
 const Example mesh_distance_example("geometry/mesh_distance", [] {
   const skycap::geometry::Mesh roof{{{0, 0, 9}, {8, 0, 9}, {8, 6, 9}, {0, 6, 9}},
                                     {{0, 1, 2}, {0, 2, 3}}};

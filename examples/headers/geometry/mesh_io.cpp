@@ -2,7 +2,7 @@
 
 #include "example.h"
 
-// A triangle to an OBJ file and back.
+// Writes a triangle to an OBJ file and reads it back.
 const Example mesh_io_example("geometry/mesh_io", [] {
   const skycap::geometry::Mesh gable{{{0, 0, 0}, {4, 0, 0}, {2, 0, 3}}, {{0, 1, 2}}};
   skycap::geometry::write_mesh(scratch("gable.obj"), gable);

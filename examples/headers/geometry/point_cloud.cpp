@@ -4,7 +4,7 @@
 
 #include "example.h"
 
-// How many points the second scan brought.
+// Counts the points that the second scan added.
 const Example point_cloud_example("geometry/point_cloud", [] {
   skycap::geometry::PointCloud cloud;
   cloud.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};

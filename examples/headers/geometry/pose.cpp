@@ -2,7 +2,7 @@
 
 #include "example.h"
 
-// What is looked at lies on the optical axis, z, as far away as it is.
+// A target is on the optical axis, z, at its distance from the sensor.
 const Example pose_example("geometry/pose", [] {
   const Eigen::Vector3d chimney(10.0, 5.0, 12.0), sensor(10.0, 1.0, 15.0);
   const skycap::geometry::View view = skycap::geometry::look_at(sensor, chimney);

@@ -2,10 +2,11 @@
 
 #include "example.h"
 
-// Points that lie elsewhere, as planners take them.
+// Passes the points of an existing buffer to a planner.
 const Example scan_example("geometry/scan", [] {
-  const std::vector<Eigen::Vector3f> buffer{{4, 0, 0}, {4, 1, 0}};  // of a driver
-  skycap::geometry::ScanSpan scan;                                  // which copies nothing
+  const std::vector<Eigen::Vector3f> buffer{{4, 0, 0}, {4, 1, 0}};  // buffer of a driver
+  // Refers to the buffer without a copy.
+  skycap::geometry::ScanSpan scan;
   scan.world_from_sensor.translation() = Eigen::Vector3d(0, 0, 2);
   scan.points = buffer;
   return scan.points.data() == buffer.data() && scan.sensor_position().z() == 2.0;

@@ -5,11 +5,11 @@
 
 #include "example.h"
 
-// Points that are none are refused; without them the scan is taken.
+// Scans with non-finite points are rejected. Without these points the scan is accepted.
 const Example usable_scan_example("geometry/usable_scan", [] {
   const float none = std::numeric_limits<float>::quiet_NaN();
   skycap::geometry::Scan scan;
-  scan.points = {{4, 0, 0}, {none, none, none}};  // a driver that says so of rays without a return
+  scan.points = {{4, 0, 0}, {none, none, none}};  // some drivers mark no-return rays this way
   try {
     skycap::geometry::require_usable(scan, {.width = 640, .height = 480});
   } catch (const skycap::Error&) {

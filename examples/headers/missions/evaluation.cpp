@@ -2,7 +2,7 @@
 
 #include "example.h"
 
-// Points on a roof cover it, and are nowhere off it.
+// Evaluates points on a roof: they cover it and have no distance from it.
 const Example evaluation_example("missions/evaluation", [] {
   const skycap::geometry::Mesh roof{{{0, 0, 9}, {8, 0, 9}, {8, 6, 9}, {0, 6, 9}},
                                     {{0, 1, 2}, {0, 2, 3}}};

@@ -2,7 +2,7 @@
 
 #include "example.h"
 
-// A laser scanner flown around a scene, measured piece by piece.
+// Simulates a laser scanner on a flight around a scene, chunk by chunk.
 const Example laser_scan_example("missions/laser_scan", [] {
   const auto mission = skycap::missions::library::Mission::parse(
       "scene: {model: builtin:teapot, longest_side: 20}\n"

@@ -2,7 +2,7 @@
 
 #include "example.h"
 
-// A mission from text, one of its keys set by the program.
+// Creates a mission from text and overrides one of its keys.
 const Example mission_example("missions/mission", [] {
   const auto mission = skycap::missions::library::Mission::parse(
       "scene: {model: builtin:teapot}\nevaluation: {coverage_distance: 0.005}\nseed: 7\n",

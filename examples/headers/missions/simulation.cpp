@@ -2,7 +2,7 @@
 
 #include "example.h"
 
-// The first scan of a mission's survey, for a loop of one's own.
+// Simulates the first scan of a mission's survey, for use in a custom survey loop.
 const Example simulation_example("missions/simulation", [] {
   const auto mission = skycap::missions::library::Mission::parse(
       "scene: {model: builtin:teapot}\nevaluation: {coverage_distance: 0.005}\n", "teapot.yaml");

@@ -2,7 +2,7 @@
 
 #include "example.h"
 
-// A whole survey, of two views, without a folder.
+// Runs a complete survey of two views without writing files.
 const Example survey_example("missions/survey", [] {
   const auto mission = skycap::missions::library::Mission::parse(
       "scene: {model: builtin:teapot, longest_side: 1}\n"

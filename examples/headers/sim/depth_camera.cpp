@@ -5,7 +5,7 @@
 
 #include "example.h"
 
-// A wall that fills the image: a return of every pixel, all on the wall.
+// Simulates a wall that fills the image: each pixel returns a point on the wall.
 const Example depth_camera_example("sim/depth_camera", [] {
   const skycap::geometry::Mesh wall{{{-50, 5, -50}, {50, 5, -50}, {0, 5, 80}}, {{0, 1, 2}}};
   const skycap::sim::Scene scene(wall);

@@ -4,12 +4,12 @@
 
 #include "example.h"
 
-// A turning laser 10 m above the ground: each shot returns, from the distance that it must.
+// Simulates a rotating laser 10 m above the ground: each pulse returns with the expected range.
 const Example lidar_example("sim/lidar", [] {
   const skycap::geometry::Mesh ground{{{-900, -900, 0}, {900, -900, 0}, {0, 900, 0}}, {{0, 1, 2}}};
   const skycap::sim::Scene scene(ground);
   skycap::sim::LidarConfig config;
-  config.channels = {{.elevation = -0.5}};  // one laser, which looks down by 0.5 rad
+  config.channels = {{.elevation = -0.5}};  // one laser, 0.5 rad downwards
   const skycap::sim::Lidar lidar(config);
   const skycap::sim::Trajectory still(
       {{.time = 0, .position = {0, 0, 10}}, {.time = 0.1, .position = {0, 0, 10}}});

@@ -4,7 +4,7 @@
 
 #include "example.h"
 
-// The scenes that come with Skycap; one of them is 40 m high.
+// Lists the built-in scenes, and creates one that is 40 m high.
 const Example models_example("sim/models", [] {
   const auto names = skycap::sim::builtin_models();
   const auto coarse = skycap::sim::builtin_model(

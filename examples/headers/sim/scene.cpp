@@ -3,7 +3,7 @@
 
 #include "example.h"
 
-// What a ray meets, and what stands between two places.
+// Finds the first hit of a ray, and tests the line of sight between two positions.
 const Example scene_example("sim/scene", [] {
   const skycap::geometry::Mesh floor{{{-5, -5, 0}, {5, -5, 0}, {0, 5, 0}}, {{0, 1, 2}}};
   const skycap::sim::Scene scene(floor);

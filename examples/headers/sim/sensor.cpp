@@ -3,7 +3,7 @@
 
 #include "example.h"
 
-// A scanner of 32 lasers with wide beams; one that never fires is refused.
+// Configures a scanner with 32 lasers and wide beams. A scanner that never fires is rejected.
 const Example sensor_example("sim/sensor", [] {
   skycap::sim::LidarConfig scanner;
   scanner.channels.clear();
@@ -17,7 +17,7 @@ const Example sensor_example("sim/sensor", [] {
   try {
     scanner.validate();
   } catch (const skycap::Error&) {
-    return true;  // and says why
+    return true;  // the message contains the reason
   }
   return false;
 });

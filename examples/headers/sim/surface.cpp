@@ -6,7 +6,7 @@
 
 #include "example.h"
 
-// A pane: rays meet it, and sensors measure nothing there.
+// A glass pane: rays hit it, but sensors get no returns from it.
 const Example surface_example("sim/surface", [] {
   const skycap::geometry::Mesh pane{{{-5, -5, 0}, {5, -5, 0}, {0, 5, 0}}, {{0, 1, 2}}};
   const std::vector<skycap::sim::Surface> surfaces{skycap::sim::Surface::glass};

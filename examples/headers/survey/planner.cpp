@@ -26,7 +26,7 @@ class ScanTwice final : public skycap::survey::Planner {
 
 }  // namespace
 
-// A planner of one's own, which the survey loop takes as it takes Skycap's.
+// A custom planner in Skycap's survey loop.
 const Example planner_example("survey/planner", [] {
   const std::unique_ptr<skycap::survey::Planner> planner = std::make_unique<ScanTwice>();
   const auto next = planner->next_view(skycap::geometry::Scan());

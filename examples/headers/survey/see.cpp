@@ -4,7 +4,7 @@
 
 #include "example.h"
 
-// A first scan in, the first view of SEE++ out.
+// Passes a first scan to SEE++ and gets the next view.
 const Example see_example("survey/see", [] {
   const skycap::sim::Scene scene(skycap::sim::builtin_model("teapot"));
   const skycap::sim::DepthCamera camera(skycap::sim::d435());

@@ -4,7 +4,7 @@
 
 #include "example.h"
 
-// Three scans in, and what is believed of the surface then.
+// Adds three scans and reads the planner's estimate of the surface.
 const Example skycap_planner_example("survey/surfel_planner", [] {
   const skycap::sim::Scene scene(skycap::sim::builtin_model("teapot"));
   const skycap::sim::DepthCamera camera(skycap::sim::d435());

@@ -5,7 +5,7 @@
 
 #include "example.h"
 
-// A planner and a sensor in turn, until four views are taken.
+// Runs a planner and a sensor alternately until four views have been taken.
 const Example survey_loop_example("survey/survey_loop", [] {
   const skycap::sim::Scene scene(skycap::sim::builtin_model("teapot"));
   const skycap::sim::DepthCamera camera(skycap::sim::d435());

@@ -2,7 +2,7 @@
 
 #include "example.h"
 
-// Inside of a fence and high enough; too low; outside.
+// Tests views inside the fence, below the minimum height, and outside.
 const Example view_limits_example("survey/view_limits", [] {
   skycap::survey::ViewLimits limits;
   limits.min_height = 2.0;

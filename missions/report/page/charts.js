@@ -1,4 +1,4 @@
-// Curves and histograms, by Chart.js.
+// Curves and histograms, drawn with Chart.js.
 
 const chart_colours = ["#0b6e99", "#c77700", "#1f8a4c", "#8a4fbf", "#c8252c", "#5b6875", "#2aa198",
   "#b5418b", "#6b7d1f", "#3d5a99"];
@@ -26,7 +26,7 @@ function chart(title, note, type, datasets, options) {
   return box;
 }
 
-/// Chart.js measures its canvas: charts are drawn once they stand in the page.
+/// Chart.js measures its canvas, so charts are drawn after they have been added to the page.
 const charts_to_draw = [];
 
 function draw_charts() {
@@ -41,7 +41,7 @@ function line(label, points, number = 0, more = {}) {
     borderWidth: 2, pointRadius: points.length > 60 ? 0 : 2, tension: 0, ...more };
 }
 
-/// A level that curves are held against.
+/// Returns a horizontal reference line.
 function level(label, from, to, y, number) {
   return line(label, [[from, y], [to, y]], number, { borderDash: [6, 4], pointRadius: 0, borderWidth: 1.5 });
 }
@@ -58,7 +58,7 @@ function coverage_chart(data, title, x_of, x_title) {
   return chart(title, null, "line", lines, { x: x_title, y: "% of the surface", y_more: { min: 0 } });
 }
 
-/// Along the route the least proven clearance of each leg, as steps.
+/// Minimum verified clearance of each leg along the route, as steps.
 function clearance_chart(data) {
   const legs = legs_of(data).filter((leg) => leg.clearance !== null);
   if (!legs.length) return null;
@@ -78,7 +78,7 @@ function clearance_chart(data) {
     { x: "metres flown", y: "m", y_more: { min: 0 } });
 }
 
-/// What is left of the battery after each leg; the bottom is the reserve.
+/// Remaining battery energy after each leg. The lower axis limit is the reserve.
 function energy_chart(data) {
   const sorties = sorties_of(data);
   if (!sorties.length || !sorties.every((sortie) => sortie.legs)) return null;
@@ -87,7 +87,8 @@ function energy_chart(data) {
     const points = [[0, left]];
     const legs_energy = sortie.legs.reduce((sum, leg) => sum + leg.energy_wh, 0);
     const legs_time = sortie.legs.reduce((sum, leg) => sum + leg.duration_s, 0);
-    // Climb, landing and the stops at the stations are the sortie's, not its legs'; in equal shares.
+    // Climb, landing and stops belong to the sortie, not to its legs. They are divided equally
+    // among the legs.
     const more_energy = (sortie.energy_wh - legs_energy) / sortie.legs.length;
     const more_time = (sortie.duration_s - legs_time) / sortie.legs.length;
     for (const leg of sortie.legs) {
@@ -103,7 +104,8 @@ function energy_chart(data) {
   return chart("Energy left above the reserve", null, "line", lines, { x: "minutes", y: "Wh", y_more: { min: 0 } });
 }
 
-// Of the surface that the planner believes covered with probability p, p should be.
+// Observed against estimated coverage probability. Ideally, a fraction p of the surface with the
+// estimate p is covered.
 function reliability_chart(data) {
   const bands = value_at(data, "summary.estimate.reliability.bands");
   if (!bands) return null;
@@ -117,7 +119,7 @@ function reliability_chart(data) {
 function survey_charts(data) {
   const { summary } = data, views = summary.per_view || [];
   if (!views.length) return null;
-  const is_known = typeof views[0].coverage === "number";  // not of a real place
+  const is_known = typeof views[0].coverage === "number";  // unknown for real sites
   const charts = [
     is_known ? coverage_chart(data, "Coverage vs. views", (view, i) => i + 1, "views") : null,
     is_known ? coverage_chart(data, "Coverage vs. path length", (view) => view.distance_m, "path length in metres (straight lines)") : null,

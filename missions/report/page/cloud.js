@@ -1,16 +1,16 @@
-// Clouds as missions/report/cloud_code.h writes them.
+// Decodes clouds written by missions/report/cloud_code.h.
 
-/// The bytes that a block of the page holds: deflated, in base64.
+/// Returns the inflated bytes of a block in the page, which contains deflated data in base64.
 async function inflated(id) {
   const block = document.getElementById(id);
   const text = atob(block.textContent), packed = new Uint8Array(text.length);
   for (let i = 0; i < packed.length; ++i) packed[i] = text.charCodeAt(i);
-  block.remove();  // its text is no longer needed
+  block.remove();  // frees the memory of its text
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-/// Of 12 interleaved bits the four of x, of y and of z, side by side.
+/// Splits 12 interleaved bits into four bits each of x, y and z.
 const taken_apart = (() => {
   const table = new Uint16Array(4096);
   for (let key = 0; key < 4096; ++key) {
@@ -25,7 +25,7 @@ function decode_positions(header, bytes) {
   const count = header.points, planes = Math.ceil(3 * header.bits / 8);
   const positions = new Float32Array(3 * count);
   const [x0, y0, z0] = header.origin;
-  let key = 0;  // up to 48 bits, which a double holds exactly
+  let key = 0;  // up to 48 bits, which a double represents exactly
   for (let i = 0; i < count; ++i) {
     let change = 0;
     for (let plane = planes - 1; plane >= 0; --plane) {
@@ -47,7 +47,7 @@ function decode_positions(header, bytes) {
   return { positions, end: planes * count };
 }
 
-/// Adds the attributes whose byte planes begin there.
+/// Adds the attributes whose byte planes start at `begin`.
 function decode_attributes(cloud, attributes, bytes, begin) {
   const count = cloud.count;
   for (const { name, values: different } of attributes) {
@@ -61,7 +61,8 @@ function decode_attributes(cloud, attributes, bytes, begin) {
   }
 }
 
-/// {count, positions, spacing, state, view, incidence}: attributes that the page has.
+/// Returns {count, positions, spacing, state, view, incidence} with the attributes that the page
+/// contains.
 async function decode_cloud(name, header) {
   const bytes = await inflated("cloud-" + name);
   const { positions, end } = decode_positions(header, bytes);

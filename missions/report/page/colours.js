@@ -1,4 +1,4 @@
-// What colours mean.
+// Colours and their meanings.
 
 const states = [
   { name: "covered", key: "covered", colour: [88, 176, 122] },
@@ -7,21 +7,22 @@ const states = [
   { name: "unreachable", key: "unreachable", colour: [158, 96, 232] },
 ];
 
-/// In the order of the numbers that points have for them.
+/// Sorts the states by their numbers in the points.
 function order_states(scales) {
   states.sort((one, other) => scales.states.indexOf(one.key) - scales.states.indexOf(other.key));
 }
 
-/// The middle of the step that a point's incidence is in [degrees]; nothing if it is not known.
+/// Returns the centre of the point's incidence step [degrees], or null if it is unknown.
 function incidence_of(cloud, index, scales) {
   const step = cloud.incidence ? cloud.incidence[index] : scales.no_incidence;
   return step === scales.no_incidence ? null : (step + 0.5) * scales.incidence_step_deg;
 }
 
-/// Points of a dark and a light end, as equal steps look equal (after matplotlib's viridis).
+/// Colour stops of a ramp from dark to light with perceptually equal steps (after matplotlib's
+/// viridis).
 const ramp_stops = [[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]];
 
-/// From near (warm) to far (cool), for what should not be near.
+/// Colour stops for clearances, from near (warm) to far (cool).
 const nearness_stops = [[232, 62, 48], [252, 160, 48], [245, 226, 110], [120, 205, 170], [70, 160, 220]];
 
 function along(stops, part) {
@@ -30,7 +31,7 @@ function along(stops, part) {
   return [0, 1, 2].map((i) => stops[low][i] + share * (stops[low + 1][i] - stops[low][i]));
 }
 
-/// Neighbouring numbers get colours far apart: by the golden angle.
+/// The golden angle gives neighbouring indices very different colours.
 function view_colour(view) {
   const hue = (view * 0.6180339887) % 1, light = 0.5 + 0.12 * (view % 3);
   const channel = (shift) => {
@@ -40,15 +41,15 @@ function view_colour(view) {
   return [channel(0), channel(8), channel(4)];
 }
 
-/// Far from each other, and from the green of covered points.
+/// Colours that differ from each other and from the green of covered points.
 const vehicle_colours = [[255, 150, 50], [70, 165, 255], [235, 95, 205], [250, 225, 90], [160, 110, 255], [240, 240, 240]];
 const vehicle_colour = (vehicle) => vehicle_colours[vehicle] || view_colour(vehicle);
 
 const css_colour = (rgb) => "rgb(" + rgb.map((channel) => Math.round(channel)).join(",") + ")";
 const css_ramp = (stops) => "linear-gradient(90deg," + stops.map(css_colour).join(",") + ")";
 
-/// Points by the cubic cells that they lie in: those of cell c are points[begin[c]] up to, without
-/// it, points[begin[c + 1]]; at(x, y, z) is the cell of three indices, or -1.
+/// Sorts points into cubic cells. The points of cell c are points[begin[c]] to points[begin[c + 1]
+/// - 1]. at(x, y, z) returns the cell with these three indices, or -1.
 function cells_of_points(positions, count, side) {
   const size = 2 ** Math.ceil(Math.log2(2 * count + 2)), table = new Int32Array(size).fill(-1);
   const places = new Int32Array(3 * count), cell_of = new Int32Array(count);
@@ -79,7 +80,8 @@ function cells_of_points(positions, count, side) {
   return { count: cells, places, begin, points, at: (x, y, z) => table[slot(x, y, z)] };
 }
 
-/// Puts the coordinates of the points in and around a cell into a list; gives their number.
+/// Writes the coordinates of the points in a cell and its neighbours to a list. Returns their
+/// number.
 function gather_around(cells, cell, positions, list) {
   const x = cells.places[3 * cell], y = cells.places[3 * cell + 1], z = cells.places[3 * cell + 2];
   let size = 0;
@@ -97,14 +99,14 @@ function gather_around(cells, cell, positions, list) {
   return size / 3;
 }
 
-/// Densities are of the neighbours within so many spacings.
+/// Radius for densities, in multiples of the point spacing.
 const density_reach = 2.5;
 
-/// Neighbours of each point within `radius`, itself included, over the disc's area and the share that
-/// the page has of all points, `all` of them: points per square metre of surface.
+/// Returns the surface density at each point [points/m^2]: the number of points within `radius`,
+/// including itself, divided by the disc area and by the fraction of all points in the page.
 function densities(cloud, radius, all) {
   const { count, positions } = cloud, result = new Float32Array(count), reach = radius * radius;
-  if (!(radius > 0)) return result;  // of a single place
+  if (!(radius > 0)) return result;  // all points have the same position
   const cells = cells_of_points(positions, count, radius);
   const scale = all / count / (Math.PI * radius * radius);
   const list = new Float32Array(3 * count);
@@ -124,7 +126,7 @@ function densities(cloud, radius, all) {
   return result;
 }
 
-/// The value under which that share of some values lies.
+/// Returns the quantile of the values.
 function quantile(values, share) {
   const sorted = Float32Array.from(values).sort();
   return sorted.length ? sorted[Math.min(sorted.length - 1, Math.floor(share * sorted.length))] : 0;

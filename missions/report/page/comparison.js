@@ -1,10 +1,11 @@
-// Surveys compared: planners on missions (results.json), and the trials of one (trials.json).
+// Comparison of surveys: planners on missions (results.json), and the trials of one mission
+// (trials.json).
 
-/// Colours that can be told apart with any kind of colour vision (Okabe and Ito), and five more.
+/// Colours for all kinds of colour vision (Okabe and Ito), and five additional ones.
 const planner_colours = ["#D55E00", "#0072B2", "#009E73", "#CC79A7", "#E69F00", "#56B4E9",
   "#7A7A7A", "#8B4513", "#6A3D9A", "#000000", "#F0A0A0"];
 
-/// What planners are compared by.
+/// Compared quantities.
 const compared = [
   { key: "views", name: "views", form: "mean" },
   { key: "coverage", name: "coverage", form: "share" },
@@ -14,7 +15,8 @@ const compared = [
   { key: "planning_time_s", name: "planning (processor time)", form: "seconds" },
 ];
 
-/// [{cell, path, colour}] with trials: a planner's on a mission; `path` leads to it in the summary.
+/// Returns [{cell, path, colour}] for planners with trials on a mission. `path` is the path in the
+/// summary.
 function cells_of(data) {
   const { summary } = data;
   const all = summary.results ? summary.results.map((cell, i) => ({ cell, path: "results." + i + "." }))
@@ -30,7 +32,7 @@ function planner_name({ cell, colour }) {
   return element("span", {}, colour_mark(colour), title_of(cell));
 }
 
-/// Mean with its 95 % interval, the deviation and the paper's figure.
+/// Returns the mean with its 95% interval, the standard deviation and the paper's value.
 function compared_figure(data, { cell, path }, { key, form }) {
   const found = cell[key];
   if (!found) return { number: "–" };
@@ -56,7 +58,7 @@ function comparison_table(data, cells) {
   }));
 }
 
-/// Mean coverage with a band of one standard deviation over the trials.
+/// Returns the curve of mean coverage with a band of one standard deviation over the trials.
 function curve_lines(one, axis, unit) {
   const curve = value_at(one.cell, "curves." + axis);
   if (!curve || !curve.x.length) return [];
@@ -70,7 +72,7 @@ function curve_lines(one, axis, unit) {
     line(title_of(one.cell), points(0), 0, mean)];
 }
 
-/// Figure, title, name and kind of the axis, and what its unit is in that of the figure.
+/// For each curve: axis in the data, title, axis label, scale, and data units per displayed unit.
 const curve_axes = [["views", "Coverage vs. views", "views", "linear"],
   ["distance_m", "Coverage vs. path length", "metres", "linear"],
   ["flown_s", "Coverage vs. flight time", "minutes from take-off", "linear", 60],
@@ -84,7 +86,7 @@ function coverage_curves(cells) {
   });
 }
 
-/// Each survey as a point.
+/// Shows each survey as a point.
 function trials_chart(cells) {
   const sets = cells.filter(({ cell }) => cell.each_trial).map((one) => ({ label: title_of(one.cell),
     data: one.cell.each_trial.map((trial) => ({ x: trial.distance_m, y: percent(trial.coverage) })),
@@ -93,7 +95,7 @@ function trials_chart(cells) {
     { x: "path length in metres (straight lines)", y: "% of the surface", is_free: true }) : null;
 }
 
-/// The means with their 95 % intervals, one planner beside the other.
+/// Shows the means with their 95% intervals for all planners.
 function interval_chart(cells, { key, name, form }) {
   const known = cells.filter(({ cell }) => cell[key]);
   if (!known.length) return null;
@@ -111,7 +113,7 @@ function interval_chart(cells, { key, name, form }) {
       y_more: form === "seconds" ? { type: "logarithmic" } : {} });
 }
 
-/// How many views, and what way, until a target was observed: Figure 6 of the paper.
+/// Number of views and path length until a target has been observed: Figure 6 of the paper.
 function target_charts(cells) {
   const known = cells.filter(({ cell }) => value_at(cell, "targets.observed") > 0);
   if (!known.length) return [];
@@ -129,7 +131,7 @@ function target_charts(cells) {
   chart("Path length until a target is observed", null, "line", ways, { x: "within metres", y: "% of the targets", y_more: { min: 0, max: 100 } })];
 }
 
-/// What it took to come to the coverage that another planner ends with.
+/// Effort to reach the final coverage of another planner.
 function reach_table(data, cells) {
   const marks = { paper: "the paper's SEE++", "see++": "SEE++ here", see: "SEE here" };
   const rows = cells.flatMap((one) => Object.entries(one.cell.until_coverage_of || {})
@@ -158,7 +160,7 @@ function trial_table(data, { cell, path }) {
       }))));
 }
 
-/// A section for each mission.
+/// Returns a section for each mission.
 function comparison_sections(data) {
   const cells = cells_of(data);
   if (!cells.length) return [element("section", {}, element("p", {}, "No completed survey yet."))];

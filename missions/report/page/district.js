@@ -1,11 +1,11 @@
-// A district: its map, the table of its targets, and the flight of all of them (district.json).
+// District report: map, table of targets, and the flight of all targets (district.json).
 
-/// The colours of coverage, from little to all, told apart with any kind of colour vision.
+/// Colours of coverage, from low to full, for all kinds of colour vision.
 const coverage_steps = [[0.5, "#d7301f"], [0.8, "#fc8d59"], [0.9, "#fdcc8a"], [0.95, "#9ecae1"], [0.98, "#4292c6"], [2, "#08519c"]];
 const not_surveyed = "#ae017e";
 
-/// The share of a target's surface that is covered: of what can be seen where that is known, since
-/// walls between houses cannot.
+/// Covered fraction of a target's surface. If the visible surface is known, it is the reference,
+/// because shared walls between houses are not visible.
 const covered_share = (survey) => survey.coverage_visible ?? survey.coverage;
 
 function coverage_colour(target) {
@@ -15,7 +15,7 @@ function coverage_colour(target) {
 const reaching = (to, i) => (i === 0 ? "below " + percent(to) + " %" : i === coverage_steps.length - 1
   ? percent(coverage_steps[i - 1][0]) + " % and more" : percent(coverage_steps[i - 1][0]) + " to " + percent(to) + " %");
 
-/// An element of a drawing.
+/// Returns an SVG element.
 function drawn(tag, attributes, ...children) {
   const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
   for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
@@ -23,12 +23,12 @@ function drawn(tag, attributes, ...children) {
   return made;
 }
 
-// North is up: y counts downward in a drawing.
+// North is up, so y is negated in SVG.
 const map_place = ([x, y]) => x.toFixed(1) + " " + (-y).toFixed(1);
 const ring_path = (rings) => rings.map((ring) => "M" + ring.map(map_place).join("L") + "Z").join("");
 const way_path = (points) => "M" + points.map(map_place).join("L");
 
-/// The box that the map shows: all outlines of targets, pads and routes, with a rim.
+/// Returns the box of the map: all outlines of targets, pads and routes, with a margin.
 function map_box(summary) {
   const box = [Infinity, Infinity, -Infinity, -Infinity];
   const take = ([x, y]) => {
@@ -42,7 +42,7 @@ function map_box(summary) {
   return [box[0] - rim, box[1] - rim, box[2] - box[0] + 2 * rim, box[3] - box[1] + 2 * rim];
 }
 
-/// [{pad, number, sortie, path}], `path` leading to the sortie in the summary.
+/// Returns [{pad, number, sortie, path}]. `path` is the path of the sortie in the summary.
 function sorties_of_district(summary) {
   if (!summary.flight) return [];
   return summary.flight.pads.flatMap((pad, p) => pad.sorties.map((sortie, i) => (
@@ -57,7 +57,7 @@ function target_mark(target) {
   return target.survey ? drawn("a", { href: report_of(target) }, mark) : mark;
 }
 
-/// A length for the scale, of the size of a fifth of the map.
+/// Returns a round length for the scale bar, about a fifth of the map's width.
 function round_length(most) {
   const power = 10 ** Math.floor(Math.log10(most));
   return [5, 2, 1].map((digit) => digit * power).find((length) => length <= most) || power;

@@ -1,16 +1,16 @@
-// The page of a survey that goes on: it is read again now and then, and stays as it was looked at.
+// Live page of a running survey. It reloads periodically and keeps the user's view.
 
 const reading_period = 5;  // [s]
 const memory_name = "skycap-page";
 
-/// The state that the page had before it was read again; nothing if it was not.
+/// Returns the state of the page before it was reloaded, or null.
 function remembered() {
   try {
     const text = sessionStorage.getItem(memory_name);
     sessionStorage.removeItem(memory_name);
     return text ? JSON.parse(text) : null;
   } catch (failure) {
-    return null;  // some browsers keep nothing for files
+    return null;  // some browsers provide no storage for local files
   }
 }
 
@@ -25,7 +25,7 @@ function remember(skycap) {
   try {
     sessionStorage.setItem(memory_name, JSON.stringify(state));
   } catch (failure) {
-    // Then the page begins anew each time.
+    // In that case the page starts with its defaults after each reload.
   }
 }
 
@@ -35,7 +35,7 @@ function restore(skycap, state) {
   if (panel && state.position) {
     panel.viewer.move_to(vector(state.position), vector(state.target), false);
     panel.set_colour(state.colour);
-    // Layers that were not there before are shown as a page that is new shows them.
+    // New layers have their default visibility.
     const is_shown = { ...state.layers };
     for (const [name, layer] of Object.entries(panel.viewer.layers)) is_shown[name] = is_shown[name] ?? layer.visible;
     panel.set_layers(Object.keys(is_shown).filter((name) => is_shown[name]));
@@ -43,7 +43,7 @@ function restore(skycap, state) {
   scrollTo(0, state.top);
 }
 
-/// Reads the page again and again, but not while somebody is at it.
+/// Reloads the page periodically, except while it is in use.
 function follow(skycap, started) {
   const { data } = skycap;
   if (!data.live) return;

@@ -1,4 +1,4 @@
-// Values as text, and elements: whatever a name holds, it becomes text and nothing else.
+// Formats values and creates elements. Names always become text, never markup.
 
 const thin_space = "\u2009";
 
@@ -8,7 +8,7 @@ function grouped(text) {
   return fraction === undefined ? digits : digits + "." + fraction;
 }
 
-/// How a figure is shown, by the name of its form.
+/// Formatting functions by name.
 const forms = {
   text: (value) => String(value),
   count: (value) => grouped(Math.round(value).toString()),
@@ -34,7 +34,7 @@ function shown(value, form) {
   return forms[form](value);
 }
 
-/// An element with attributes, and children that are elements or text.
+/// Returns an element with attributes. Its children are elements or strings.
 function element(tag, attributes, ...children) {
   const made = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes || {})) {
@@ -49,13 +49,13 @@ function element(tag, attributes, ...children) {
   return made;
 }
 
-/// What stands at a path such as "flight.route.sorties.0.energy_wh" of some data.
+/// Returns the value at a path such as "flight.route.sorties.0.energy_wh".
 function value_at(data, path) {
   return path.split(".").reduce(
     (value, key) => (value === null || value === undefined ? undefined : value[key]), data);
 }
 
-/// A figure of the summary, with the path that it came by.
+/// Returns a value of the summary as an element with its path.
 function figure(data, path, form) {
   return element("span", { "data-figure": path, "data-form": form },
     shown(value_at(data.summary, path), form));

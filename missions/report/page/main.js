@@ -1,10 +1,10 @@
-// Puts the page together.
+// Assembles the page.
 
 function read_data() {
   return JSON.parse(document.getElementById("data").textContent);
 }
 
-/// Libraries come deflated; the policy knows their text by its hash.
+/// Loads a deflated library. The content security policy contains the hash of its text.
 async function load_library(name) {
   const text = new TextDecoder().decode(await inflated("library-" + name));
   const script = document.createElement("script");
@@ -50,7 +50,8 @@ async function clouds_of(data) {
   return clouds;
 }
 
-/// The view, or why there is none; the rest of the page does not need it.
+/// Returns the 3-D view, or the reason why it is not available. The rest of the page does not
+/// depend on it.
 function view_section(data, clouds, skycap) {
   const stage = element("div", { class: "stage" });
   const section = element("section", { class: "view", id: "view" }, stage);
@@ -65,7 +66,7 @@ function view_section(data, clouds, skycap) {
   section.append(element("div", { class: "pictures" }));
 }
 
-/// Pictures for paper: the view as it stands, and from above.
+/// Pictures for printing: the current view, and the view from above.
 function take_pictures(skycap) {
   const { viewer } = skycap.panel, box = document.querySelector(".pictures");
   const before = [viewer.camera.position.clone(), viewer.controls.target.clone()];
@@ -80,7 +81,7 @@ function take_pictures(skycap) {
   box.replaceChildren(now, top);
 }
 
-/// What stands below the view.
+/// Returns the sections below the view.
 function sections_of(data, skycap) {
   if (data.kind === "comparison" || data.kind === "trials") {
     return [...comparison_sections(data), files_section(data), how_section(how_compared)];
@@ -120,7 +121,7 @@ async function show() {
   return skycap;
 }
 
-/// For whoever drives the page: a promise of all that it shows.
+/// `window.skycap` is a promise of all displayed objects, for scripts that control the page.
 function main() {
   window.skycap = show().catch((failure) => {
     document.getElementById("main").append(element("p", { class: "notice" }, "Cannot show the page: " + failure.message));

@@ -1,4 +1,4 @@
-// The controls around the 3-D view, and what it says of a view, a point or a distance.
+// Controls around the 3-D view, and information about a view, a point or a distance.
 
 const colour_modes = [["state", "coverage"], ["file", "file colours"], ["view", "view"], ["height", "height"],
   ["time", "time"], ["incidence", "incidence"], ["density", "density"]];
@@ -15,7 +15,7 @@ class Panel {
     this.tags = [];
     stage.append(this.legend);
     this.add_north();
-    this.measured = null;  // the places picked so far, while measuring
+    this.measured = null;  // positions picked so far during a measurement
     this.viewer.listeners.push(() => this.place_tags());
     this.listen();
     this.bars = [this.view_bar(), this.replay_bar()].filter(Boolean);
@@ -84,7 +84,7 @@ class Panel {
     const ceiling = this.data.summary.attainable_coverage;
     const attainable = typeof ceiling === "number" ? " of " + shown(ceiling, "share") + " attainable" : "";
     const covered = typeof views[number].coverage === "number" ? " · covered " +
-      shown(views[number].coverage, "share") + attainable : "";  // of a real place nobody knows
+      shown(views[number].coverage, "share") + attainable : "";  // unknown for real sites
     this.now.textContent = "view " + number + " of " + (views.length - 1) + covered;
   }
 
@@ -186,7 +186,7 @@ class Panel {
       new THREE.LineBasicMaterial({ color: 0xffffff }));
   }
 
-  /// What a view was, and what became of it.
+  /// Returns the properties of a view and its results.
   view_rows(number) {
     const view = views_of(this.data)[number], path = "per_view." + number + ".";
     const [x, y, z] = view.direction;
@@ -202,7 +202,8 @@ class Panel {
       ["planning time", figure(this.data, path + "planning_time_s", "seconds")],
       ["path length", figure(this.data, path + "distance_m", "metres")]);
     if (typeof view.coverage === "number") rows.push(["coverage after this view", figure(this.data, path + "coverage", "share")]);
-    const leg = value_at(this.data, "summary.flight.replanned.is_flown") ? null // then legs lead to other views
+    // In that case the legs lead to other views.
+    const leg = value_at(this.data, "summary.flight.replanned.is_flown") ? null
       : legs_of(this.data).find((one) => one.to === number);
     if (leg && leg.clearance !== null) rows.push(["leg clearance", shown(leg.clearance, "metres")]);
     return rows;
@@ -254,7 +255,7 @@ class Panel {
     return ball;
   }
 
-  /// Whether there is something that another look at the survey would throw away.
+  /// Returns true if a reload would discard a selection, a measurement or a replay.
   is_in_use() {
     return this.card || this.timer || this.measured || (this.slider && this.slider.value !== this.slider.max);
   }

@@ -1,8 +1,8 @@
-// A scan in flight: what its page has that others have not.
+// Parts of the report that only scans in flight have.
 
 const flown_colour = [236, 240, 243], believed_colour = [88, 183, 224];
 
-/// The sensor's way as it was and as its carrier believes, where they differ to be seen.
+/// Returns the true and the estimated trajectory of the sensor, if they differ visibly.
 function trajectory_lines(data) {
   if (!data.trajectory) return [];
   const { flown, believed } = data.trajectory, lines = [];

@@ -1,11 +1,11 @@
-// What is in the 3-D view, layer by layer.
+// Layers of the 3-D view.
 
 const layer_names = {
   measured: "points", missing: "missing", unreachable: "unreachable", route: "route", fleet: "fleet", clearance: "clearance", views: "views", next: "next view",
   free: "free-space boundary", volumes: "volumes", priors: "prior data", ground: "ground",
 };
 
-/// The box of all that belongs to the survey.
+/// Returns the bounding box of all objects of the survey.
 function extent_of(data, clouds) {
   const box = new THREE.Box3();
   for (const [name, cloud] of Object.entries(clouds)) {
@@ -23,13 +23,14 @@ function extent_of(data, clouds) {
   return { all: box, core: core.isEmpty() ? box.clone() : core };
 }
 
-/// The views of a survey; of a scan its pieces or images.
+/// The views of a survey, or the pieces or images of a scan.
 const views_of = (data) => data.pieces || data.summary.per_view || [];
 const sorties_of = (data) => value_at(data, "summary.flight.route.sorties") || [];
 
 const vehicles_of = (data) => value_at(data, "summary.flight.fleet.vehicles") || [];
 
-/// [{points, clearance, sortie, from, to}]: as proven, or straight lines where a summary has none.
+/// Returns [{points, clearance, sortie, from, to}] of verified legs. Legs are straight lines if a
+/// summary has none.
 function legs_of(data) {
   const legs = [], views = views_of(data);
   const order = value_at(data, "summary.flight.route.order") || [];
@@ -49,7 +50,7 @@ function legs_of(data) {
   return legs;
 }
 
-/// Clearances are told apart from what was asked for up to this much more [m].
+/// Colours distinguish clearances up to this much above the required one [m].
 const told_apart = 3;
 
 function clearance_colour(clearance, asked) {
@@ -57,7 +58,7 @@ function clearance_colour(clearance, asked) {
   return along(nearness_stops, (clearance - asked) / told_apart);
 }
 
-/// Indices in such an order that each beginning of it is an even choice: every 64th, then those that
+/// Returns indices in an order whose prefixes are evenly distributed: every 64th, then those that
 /// every 32nd adds, and so on.
 function sparse_first(count) {
   const order = new Uint32Array(count), widest = 64;
@@ -83,7 +84,7 @@ function cloud_points(cloud, least, spacing = cloud.spacing) {
   return points;
 }
 
-/// The points of a cloud that are in some states.
+/// Returns the points of a cloud that are in certain states.
 function part_of_cloud(cloud, is_in) {
   const indices = Array.from(cloud.state.keys()).filter((i) => is_in(cloud.state[i]));
   const positions = new Float32Array(3 * indices.length);
@@ -91,11 +92,11 @@ function part_of_cloud(cloud, is_in) {
   return { ...cloud, count: indices.length, positions, state: Uint8Array.from(indices, (i) => cloud.state[i]) };
 }
 
-/// Surface that is missing, and what is out of reach for itself. A simulator knows that of the inside
-/// of walls, too, which would cover what was measured of the outside.
+/// Layers of missing and unreachable surface. In a simulation, the latter includes the insides of
+/// walls, which would hide the measured outsides.
 function missing_layers(data, missing, main) {
   const layers = {}, unreachable = states.findIndex((state) => state.key === "unreachable");
-  // Few and far between, points would look larger than what they stand for.
+  // Sparse points would be drawn larger than the area that they represent.
   const widest = main && main.count > 1 ? 3 * main.spacing : Infinity;
   const add = (name, is_in) => {
     const part = part_of_cloud(missing, is_in);
@@ -135,7 +136,7 @@ const volume_looks = {
   truth: { colour: 0xb8c8d8, opacity: 0.3, name: "prior: truth" },
 };
 
-/// Surfaces of prior data.
+/// Returns the surfaces of prior data.
 function prior_group(data) {
   const group = new THREE.Group();
   for (const prior of (data.scene && data.scene.priors) || []) {
@@ -169,7 +170,8 @@ function volume_group(data, extent) {
 
 function view_group(data, size) {
   const group = new THREE.Group(), views = views_of(data);
-  if (!views.length || !data.scene || data.piece === "piece") return group;  // a scanner looks around
+  // a scanner has no frustum.
+  if (!views.length || !data.scene || data.piece === "piece") return group;
   const depth = size / 26;
   group.userData.depth = depth;
   const points = views.flatMap((view) => frustum_lines(view, data.scene.sensor, depth));
@@ -202,7 +204,7 @@ function pad_ring(pad, size, color) {
   return ring;
 }
 
-/// The ways of several vehicles, each in its colour, and their pads.
+/// Returns the paths of several vehicles, each in its colour, and their pads.
 function fleet_group(data, size) {
   const group = new THREE.Group();
   const lines = vehicles_of(data).flatMap((vehicle, i) => vehicle.sorties.flatMap((sortie) =>
@@ -214,7 +216,7 @@ function fleet_group(data, size) {
   return group;
 }
 
-/// Where a survey that goes on looks next, and the way there.
+/// Returns the next view of a live survey and the path to it.
 function next_group(data, size) {
   const group = new THREE.Group(), next = data.live;
   if (!next || !next.position || !data.scene) return group;
@@ -227,7 +229,7 @@ function next_group(data, size) {
   return group;
 }
 
-/// The room that the proof keeps free around the route.
+/// Returns the verified clearance around the route.
 function clearance_group(data) {
   const group = new THREE.Group(), asked = value_at(data, "summary.flight.clearance_m.total");
   const lines = legs_of(data).map((leg) => ({ points: leg.points, colour: [120, 200, 240] }));
@@ -238,7 +240,7 @@ function clearance_group(data) {
   return group;
 }
 
-/// Where the space ends that was measured to be free, which the route is proven in.
+/// Returns the boundary of the measured free space, in which the route is verified.
 function free_group(cloud) {
   const group = new THREE.Group();
   if (!cloud || !cloud.count) return group;
@@ -266,7 +268,7 @@ function build_layers(data, clouds) {
   add("volumes", volume_group(data, extent));
   add("priors", prior_group(data));
   layers.ground = ground_grid(extent, data.scene ? data.scene.ground : extent.all.min.z);
-  // What a fleet flies together is shown in place of the same flown by one vehicle.
+  // The flight of a fleet is shown instead of the same flight by one vehicle.
   for (const name of layers.fleet ? ["route", "clearance", "free"] : ["clearance", "free"]) {
     if (layers[name]) layers[name].visible = false;
   }

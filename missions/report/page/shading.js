@@ -1,6 +1,6 @@
-// How points are drawn: round, sized by their spacing, then shaded by depth (eye-dome lighting,
-// C. Boucheny, "Visualisation scientifique de grands volumes de donnees", 2009): without normals,
-// edges and hollows stand out.
+// Points are drawn as discs, scaled by their spacing, and shaded by depth (eye-dome lighting, C.
+// Boucheny, "Visualisation scientifique de grands volumes de donnees", 2009). This makes edges and
+// hollows visible without normals.
 
 const point_vertex = `
 attribute vec3 colour;

@@ -1,8 +1,8 @@
-// Routes, frusta and volumes as geometry.
+// Geometry of routes, frusta and volumes.
 
 const vector = (list) => new THREE.Vector3(list[0], list[1], list[2]);
 
-/// Round tubes along polylines: [{points, colour}], one geometry for all.
+/// Returns round tubes along polylines [{points, colour}], in one geometry.
 function tubes(lines, radius, sides) {
   const positions = [], normals = [], colours = [], indices = [];
   for (const { points, colour } of lines) {
@@ -38,7 +38,7 @@ function tubes(lines, radius, sides) {
   return geometry;
 }
 
-/// The corners of what a camera at a view sees, `depth` away; its picture's top is up.
+/// Returns the corners of a camera's frustum at the distance `depth`. The top of the image is up.
 function frustum_corners(view, sensor, depth) {
   const eye = vector(view.position), forward = vector(view.direction).normalize();
   const steep = Math.abs(forward.z) > 0.999999;
@@ -62,7 +62,8 @@ function line_geometry(points) {
   return new THREE.BufferGeometry().setFromPoints(points);
 }
 
-/// Upright walls over a footprint, and their edges; ends that are open are put where all is seen.
+/// Returns the vertical walls on a footprint and their edges. Open ends are limited to the visible
+/// range.
 function prism(volume, lowest, highest) {
   const bottom = volume.bottom === null ? lowest : Math.max(volume.bottom, lowest);
   const top = volume.top === null ? highest : Math.min(volume.top, highest);

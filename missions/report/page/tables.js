@@ -1,6 +1,7 @@
-// The page's tables.
+// Tables of the page.
 
-/// rows: lists of cells; a cell is text, an element, or {number: text}.
+/// Returns a table. `rows` contains lists of cells. A cell is a string, an element, or {number:
+/// string}.
 function table(headings, rows, attributes_of = () => ({})) {
   const cell = (tag, content) => (content && content.number !== undefined
     ? element(tag, { class: "number" }, content.number)
@@ -11,7 +12,7 @@ function table(headings, rows, attributes_of = () => ({})) {
       row.map((content) => cell("td", content)))))));
 }
 
-/// A mark in a colour of style sheets.
+/// Returns a colour sample with a CSS colour.
 function colour_mark(colour) {
   const mark = element("span", { class: "swatch" });
   mark.style.background = colour;
@@ -20,11 +21,11 @@ function colour_mark(colour) {
 
 const reason_text = Object.fromEntries(states.map((state) => [state.key, state.name]));
 const reason_colour = Object.fromEntries(states.map((state) => [state.key, state.colour]));
-/// Of holes after the first few those of less than a share of all that is missing are summed, and
-/// all after so many.
+/// After the first few, holes below a fraction of the missing area are summed up. The list ends
+/// after the maximum number.
 const fewest_holes = 12, least_hole = 0.01, most_holes = 40;
 
-/// What the route files cover, by their formats, beside the survey; and the largest gaps of each.
+/// Returns the coverage and the largest gaps of each route file format, compared with the survey.
 function written_parts(data) {
   const { written } = data.summary.flight;
   if (!written || !written.length) return [];
@@ -53,7 +54,7 @@ function written_parts(data) {
     table(["", number("Views"), number("Coverage"), number("Coverage of visible surface")], rows), ...parts];
 }
 
-/// What is missing, piece by piece; the column of areas sums to the missing share.
+/// Lists the holes. The areas sum to the missing fraction.
 function holes_section(data, on_pick) {
   const surface = data.summary.surface;
   if (!surface) return null;
@@ -91,7 +92,7 @@ function holes_section(data, on_pick) {
     }));
 }
 
-/// What was to be surveyed, by the mission's prior data.
+/// Lists the targets from the mission's prior data.
 function targets_section(data) {
   const { targets } = data.summary;
   if (!targets || !targets.length) return null;
@@ -110,7 +111,8 @@ function targets_section(data) {
     table(["Object", number("Area"), number("Covered"), number("Coverage distance")], rows));
 }
 
-/// Where a sensor would have to be to look at a hole head-on, as far off as its nearest view.
+/// Returns the position from which a hole is visible perpendicularly, at the distance of its
+/// nearest view.
 function seen_from(data, hole) {
   if (!hole.normal.some((part) => part !== 0)) return "no dominant side";
   const distance = Math.min(hole.view_distance_m || 10, 30);
@@ -120,7 +122,7 @@ function seen_from(data, hole) {
   return places_text(place);
 }
 
-/// Sorties that trajectories and KML files fly past their views.
+/// Returns the sorties that trajectories and KML files fly with fly-through capture.
 function passage_parts(data) {
   return sorties_of(data).map((sortie, i) => {
     if (!sortie.passage) return null;
@@ -131,7 +133,7 @@ function passage_parts(data) {
   }).filter(Boolean);
 }
 
-/// The mission whose views were chosen anew beside that through the survey's views.
+/// Compares the replanned mission with the mission through the survey's views.
 function anew_parts(data) {
   const { replanned: anew } = data.summary.flight;
   if (!anew) return [];
@@ -147,7 +149,7 @@ function anew_parts(data) {
       figure(data, "flight.replanned.reflight.coverage_visible", "share"), " of the visible surface.") : null].filter(Boolean);
 }
 
-/// Several vehicles that fly the mission together.
+/// Returns the flight of several vehicles.
 function fleet_parts(data) {
   const { fleet } = data.summary.flight;
   if (!fleet) return [];
@@ -174,7 +176,7 @@ function fleet_parts(data) {
     vehicles, element("p", {}, "Times from the first take-off:"), times, missed.length ? element("ul", {}, missed) : null].filter(Boolean);
 }
 
-/// The flight that measured, before the mission that is written.
+/// Returns the survey flight, which precedes the exported mission.
 function surveyed_part(data) {
   const frames = (data.summary.per_view || []).reduce((sum, view) => sum + (view.en_route_frames || 0), 0);
   return element("p", {}, "The survey flew ", figure(data, "flight.survey.length_m", "metres"), " in ",
@@ -264,7 +266,7 @@ function settings_section(data) {
     table(["Key", "Value"], Object.entries(settings).map(([key, value]) => [key, setting_text(value)]))));
 }
 
-/// Definitions of the figures, for readers who have only the page.
+/// Definitions of the figures, for readers without the documentation.
 const how_surveyed = [
   ["Coverage (planner estimate)", "Area of measured and predicted surface, weighted by the probability that it has a measurement within the coverage distance, divided by the total area."],
   ["Coverage (ground truth)", "Fraction of samples, evenly distributed over the surface of the simulated model, that have a measurement within the coverage distance. It is not used by the planner. Visible surface: samples that a sensor can see from an admissible view."],

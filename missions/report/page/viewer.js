@@ -1,6 +1,7 @@
-// The 3-D view: draws its layers when something has changed, and answers what is under a place.
+// The 3-D view. It draws its layers after changes and finds the object at a screen position.
 
-/// A frame of a movement may take so long, and rest begins so long after the last one [ms].
+/// Maximum duration of a frame during motion, and delay of the complete frame after the last change
+/// [ms].
 const fluent_frame = 40, rest = 250;
 
 class Viewer {
@@ -22,7 +23,7 @@ class Viewer {
       minDistance: this.size / 400, maxDistance: this.size * 6 });
     this.controls.addEventListener("change", () => this.draw_soon());
     this.listeners = [];
-    this.points_per_millisecond = 2000;  // until it is measured
+    this.points_per_millisecond = 2000;  // initial value until the first measurement
     this.mode = null;
     this.last_view = Infinity;
     this.marks = new THREE.Group();
@@ -45,7 +46,7 @@ class Viewer {
   make_screen() {
     this.target = new THREE.WebGLRenderTarget(4, 4, {
       minFilter: THREE.NearestFilter, magFilter: THREE.NearestFilter });
-    // Other types are of 16 bits here, and shading by depth would draw their steps.
+    // Other types have 16 bits here, and depth shading would show their steps.
     this.target.depthTexture = new THREE.DepthTexture(4, 4, THREE.FloatType);
     this.screen = new THREE.Mesh(new THREE.PlaneBufferGeometry(2, 2), screen_material());
     this.screen.frustumCulled = false;
@@ -65,8 +66,8 @@ class Viewer {
     this.draw_soon();
   }
 
-  /// With as many points as can be drawn fluently; with all of them once nothing has changed for a
-  /// while.
+  /// Draws as many points as are possible at an interactive rate. Draws all points after a period
+  /// without changes.
   draw_soon() {
     clearTimeout(this.completion);
     if (this.is_waiting) return;
@@ -88,7 +89,7 @@ class Viewer {
     return Math.min(1, this.points_per_millisecond * fluent_frame / Math.max(1, this.points_on()));
   }
 
-  /// How many points the frame that was begun last takes a millisecond; the machine draws beside us.
+  /// Measures the points per millisecond of the last frame. The GPU works asynchronously.
   measure_pace() {
     const gl = this.renderer.getContext(), start = performance.now(), points = this.shown_share * this.points_on();
     const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
@@ -104,7 +105,7 @@ class Viewer {
     setTimeout(look, 4);
   }
 
-  /// An even choice of the points, as much larger as they are fewer.
+  /// Shows an evenly distributed fraction of the points, and enlarges them accordingly.
   show_share(share) {
     this.shown_share = share;
     for (const [, layer] of this.cloud_layers) {
@@ -142,7 +143,7 @@ class Viewer {
     for (const listener of this.listeners) listener();
   }
 
-  /// From a side of the world, or from where most is seen.
+  /// Moves the camera to a side of the scene or to an overview.
   look(from, is_smooth = true) {
     const directions = { N: [0, 1, 0.35], E: [1, 0, 0.35], S: [0, -1, 0.35], W: [-1, 0, 0.35],
       top: [0, -0.0001, 1], overview: [-0.62, -0.85, 0.62] };
@@ -156,12 +157,12 @@ class Viewer {
     this.move_to(centre.clone().addScaledVector(direction, share * distance), centre, is_smooth);
   }
 
-  /// Near to a place, from the side that it faces.
+  /// Moves the camera close to a position, on the side that it faces.
   look_at_place(place, normal, radius) {
     const centre = vector(place), out = vector(normal || [0, 0, 0]);
     if (out.length() < 0.5) out.copy(this.camera.position).sub(centre);
     out.normalize();
-    if (Math.abs(out.z) > 0.99) out.set(0.1, 0.1, out.z).normalize();  // up is up on the screen
+    if (Math.abs(out.z) > 0.99) out.set(0.1, 0.1, out.z).normalize();  // y is up on the screen
     this.move_to(centre.clone().addScaledVector(out, Math.max(4 * radius, this.size / 9)), centre, true);
   }
 
@@ -188,7 +189,7 @@ class Viewer {
     this.draw_soon();
   }
 
-  /// Colours the points by one of colour_modes; says what the colours mean.
+  /// Colours the points by one of colour_modes and updates the legend.
   colour_by(mode) {
     this.mode = mode;
     const legend = { rows: [], ramp: null };
@@ -203,7 +204,7 @@ class Viewer {
     return legend;
   }
 
-  /// Shows the survey as it was after that view.
+  /// Shows the survey after this view.
   replay(last_view) {
     this.last_view = last_view;
     const views = views_of(this.data).length, is_all = last_view >= views - 1;
@@ -215,7 +216,8 @@ class Viewer {
     this.draw_soon();
   }
 
-  /// What stands out: a view's pyramid, a ring around a place, a measured distance.
+  /// Shows highlighted objects: the frustum of a view, a ring around a position, or a measured
+  /// distance.
   mark(objects) {
     this.marks.remove(...this.marks.children);
     if (objects.length) this.marks.add(...objects);
@@ -228,7 +230,7 @@ class Viewer {
       is_seen: seen.z < 1 && seen.z > -1 };
   }
 
-  /// The view whose sensor is drawn within some pixels of a place on the screen; else -1.
+  /// Returns the view whose sensor is drawn within some pixels of a screen position, otherwise -1.
   view_at(x, y) {
     if (!this.layers.views || !this.layers.views.visible) return -1;
     let best = -1, least = 16;
@@ -243,7 +245,7 @@ class Viewer {
     return best;
   }
 
-  /// The point of a cloud that is drawn nearest to a place on the screen, of those in front.
+  /// Returns the front-most cloud point at a screen position.
   point_at(x, y) {
     let best = null;
     for (const [name, layer] of this.cloud_layers) {
@@ -255,7 +257,7 @@ class Viewer {
     return best;
   }
 
-  /// What a sensor measured from a view: its own points, drawn as it saw them, into a 2-D canvas.
+  /// Draws the points measured from a view, as seen by its sensor, into a 2-D canvas.
   picture_of(number, picture) {
     const view = views_of(this.data)[number], { sensor } = this.data.scene;
     const width = picture.width, height = picture.height;
@@ -292,7 +294,7 @@ class Viewer {
   }
 }
 
-/// Of the points within 9 pixels, the one that is nearest to the eye, pixels weighed in.
+/// Returns the point closest to the camera within 9 pixels. The distance in pixels is weighted in.
 function nearest_on_screen(viewer, cloud, uniforms, x, y) {
   const matrix = new THREE.Matrix4().multiplyMatrices(viewer.camera.projectionMatrix,
     viewer.camera.matrixWorldInverse).elements;
@@ -316,7 +318,7 @@ function nearest_on_screen(viewer, cloud, uniforms, x, y) {
   return best;
 }
 
-/// A function from a point's index to its colour.
+/// Returns a function from a point's index to its colour.
 function painter_of(mode, cloud, legend, data) {
   const p = cloud.positions;
   const ramp = (title, values, low, high, form, stops = ramp_stops) => {
@@ -343,7 +345,7 @@ function painter_of(mode, cloud, legend, data) {
     return (i) => (cloud.incidence[i] === data.scales.no_incidence ? unknown : paint(i));
   }
   if (mode === "density") {
-    // The preview of a scan is a share of its points.
+    // The preview of a scan contains a fraction of its points.
     const all = data.kind === "scan" ? Math.max(data.summary.points || 0, cloud.of) : cloud.of;
     if (!cloud.density) cloud.density = densities(cloud, density_reach * cloud.spacing, all);
     return ramp("points per m²", (i) => cloud.density[i], 0, quantile(cloud.density, 0.99), "count");

@@ -1,4 +1,5 @@
-// Which scans go to the survey, and from where, whatever a robot sends.
+// Selection of the scans that the bridge forwards to the survey, and of their poses, for valid and
+// invalid messages of a robot.
 #include "clients/ros2/bridge.h"
 
 #include <functional>
@@ -40,10 +41,10 @@ TEST_F(Ros2Bridge, SendsScanWhenRobotIsSettledAtView) {
   begin();
   odometry(8.0, {0, 0, 0});
   odometry(8.05, {0, 0, 0});
-  cloud(8.02);  // far from the view
+  cloud(8.02);  // too far from the view
   proceed();
   arrive();
-  cloud(9.2);  // there, but since 0.2 s only
+  cloud(9.2);  // at the view, but only for 0.2 s
   odometry(9.0 - 0.04, {3, 0, 0});
   proceed();
   EXPECT_THAT(scans_, IsEmpty());
@@ -60,15 +61,15 @@ TEST_F(Ros2Bridge, SendsEnRouteScansWhenMissionCapturesEnRoute) {
   answer_ = begun + std::string(first_view).substr(1);
   begin();
   for (int step = 0; step <= 40; ++step) odometry(8.0 + 0.05 * step, {2.5 * 0.05 * step, 0, 0});
-  for (const double time : {8.5, 9.02, 9.4, 9.6}) {  // within tolerance from 9.88 s on
+  for (const double time : {8.5, 9.02, 9.4, 9.6}) {  // within tolerance since 9.88 s
     cloud(time);
     proceed();
   }
   using skycap_live::From;
-  EXPECT_THAT(origins_, ElementsAre(From::en_route, From::en_route));  // a second and more apart
+  EXPECT_THAT(origins_, ElementsAre(From::en_route, From::en_route));  // at least 1 s apart
   EXPECT_NEAR(poses_.back()[3], 2.5 * 1.6, 1e-9);
-  EXPECT_THAT(goals_, SizeIs(1));  // the way stands
-  cloud(9.95);                     // there, but not at rest
+  EXPECT_THAT(goals_, SizeIs(1));  // the goal has not changed
+  cloud(9.95);                     // at the view, but moving
   proceed();
   EXPECT_THAT(origins_, SizeIs(2));
   for (int step = 1; step <= 20; ++step) odometry(10.0 + 0.05 * step, {5, 0, 0});
@@ -82,7 +83,7 @@ TEST_F(Ros2Bridge, SendsEnRouteScansWhenMissionCapturesEnRoute) {
 
 TEST_F(Ros2Bridge, ComputesPosesAndMountFromTransforms) {
   begin_with_transforms();
-  cloud(8.0);  // tells the frame of the camera, from a time that nobody knows of
+  cloud(8.0);  // provides the camera frame, without a pose at that time
   proceed(1.0);
   warnings_.clear();
   localised([](double) { return Vector3d(4, 0, -0.5); });
@@ -101,7 +102,7 @@ TEST_F(Ros2Bridge, WaitsWhileTransformsStillMove) {
   cloud(8.0);
   proceed(1.0);
   localised([](double time) { return Vector3d(time < 9.8 ? 2 + (time - 9.0) : 4, 0, -0.5); });
-  cloud(10.02);  // there since 0.2 s
+  cloud(10.02);  // at the view for 0.2 s
   proceed();
   EXPECT_THAT(scans_, IsEmpty());
   cloud(10.5);
@@ -109,7 +110,7 @@ TEST_F(Ros2Bridge, WaitsWhileTransformsStillMove) {
   EXPECT_THAT(scans_, SizeIs(1));
 }
 
-/// There before and after, and in between nobody knows.
+/// The poses before and after the gap are at the view; the pose during the gap is unknown.
 TEST_F(Ros2Bridge, WarnsAboutPoseGapsDuringSettling) {
   const std::vector<double> times = {9.0, 9.05, 9.1, 9.6, 9.65, 9.7, 9.75};
   begin();
@@ -125,13 +126,13 @@ TEST_F(Ros2Bridge, WarnsAboutPoseGapsDuringSettling) {
   EXPECT_THAT(scans_, IsEmpty());
 }
 
-/// An arm that moves beside them says nothing of when the body was last heard of.
+/// A moving arm must not refresh the time stamp of the body transform.
 TEST_F(Ros2Bridge, StampsGoalsWithTimeOfBodyTransforms) {
   begin_with_transforms();
   cloud(8.0);
   transforms(9.0, {{"map", "base_link", {0, 0, 0}}});
   transforms(12.0, {{"base_link", "arm", {0, 0, 1}}, {"map", "another_robot", {0, 0, 1}}});
-  command("refuse behind the fence");  // published anew
+  command("refuse behind the fence");  // published again
   EXPECT_EQ(goals_.back().stamp, seconds(9.0));
   transforms(9.5, {{"map", "base_link", {0, 0, 0}}});
   command("refuse behind the fence");
@@ -151,7 +152,7 @@ TEST_F(Ros2Bridge, IgnoresScanWithOrientationOutsideTolerance) {
   for (int step = 0; step <= 40; ++step) {
     const SampleOdometry sample(
         seconds(9.0 + 0.05 * step), {5, 0, 0},
-        Quaterniond(Eigen::AngleAxisd(0.12, Vector3d::UnitX())));  // 0.1 are allowed
+        Quaterniond(Eigen::AngleAxisd(0.12, Vector3d::UnitX())));  // tolerance: 0.1
     bridge_->receive(sample.message, now_);
   }
   cloud(10.0);
@@ -176,8 +177,8 @@ TEST_F(Ros2Bridge, HoldsScansForOdometryUntilTimeout) {
   EXPECT_THAT(poses_, SizeIs(1));
 }
 
-/// Lost, late, twice, from the future, or nonsense: no scan with a wrong pose, no crash, a line
-/// each.
+/// Lost, late, duplicate, future and malformed messages cause no scan with a wrong pose and no
+/// crash, but one warning each.
 TEST_F(Ros2Bridge, KeepsInvalidMessagesOutOfSurvey) {
   begin({.taking = Taking::every});
   const double none = std::numeric_limits<double>::quiet_NaN();
@@ -186,7 +187,7 @@ TEST_F(Ros2Bridge, KeepsInvalidMessagesOutOfSurvey) {
   now_ += 10.0;
   arrive();
   odometry(2e9, {700, 0, 0});  // from the future
-  odometry(10.0, {9, 9, 9});   // another one at 10.0
+  odometry(10.0, {9, 9, 9});   // a different pose with the time stamp 10.0
   EXPECT_THAT(warnings_.back(), HasSubstr("a different pose has the same stamp"));
   now_ += 10.0;
   {
@@ -200,7 +201,7 @@ TEST_F(Ros2Bridge, KeepsInvalidMessagesOutOfSurvey) {
   proceed();
   ASSERT_THAT(poses_, SizeIs(1));
   EXPECT_EQ(poses_[0][3], 5.0);
-  for (const double time : {10.0, 9.0}) {  // twice, and late
+  for (const double time : {10.0, 9.0}) {  // duplicate and late
     now_ += 10.0;
     cloud(time);
     proceed();
@@ -220,7 +221,7 @@ TEST_F(Ros2Bridge, KeepsInvalidMessagesOutOfSurvey) {
   bridge_->receive(stampless.message, now_);
   EXPECT_THAT(warnings_.back(), HasSubstr("its stamp is not set"));
   EXPECT_THAT(poses_, SizeIs(1));
-  cloud(10.5);  // and all is well
+  cloud(10.5);  // valid again
   proceed();
   EXPECT_THAT(poses_, SizeIs(2));
 }

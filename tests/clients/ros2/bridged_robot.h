@@ -1,4 +1,4 @@
-/// A robot that sends its bridge what it likes, and the survey on the other side.
+/// Fixture: a bridge between a scripted robot and a scripted survey.
 #pragma once
 
 #include <functional>
@@ -16,7 +16,8 @@ namespace skycap::ros2 {
 
 using Eigen::Vector3d;
 
-/// A survey that wants a view at (5, 0, 0), along z of the world: the robot does not have to turn.
+/// Survey status that requests a view at (5, 0, 0), looking along the world's z axis, so that the
+/// robot does not have to turn.
 inline constexpr const char* first_view =
     R"({"id": 3, "state": "view", "scans": 2, "points": 9, "rejected": 0,
         "view": {"position": [5, 0, 0], "direction": [0, 0, 1], "quaternion_xyzw": [0, 0, 0, 1]},
@@ -68,12 +69,13 @@ class Ros2Bridge : public testing::Test {
     const SampleTransforms sample(seconds(time), std::move(frames));
     bridge_->receive(sample.message, is_static, now_);
   }
-  /// Begins with TF alone, by which the camera is half a metre above the body.
+  /// Begins with TF only, in which the camera is 0.5 m above the body.
   void begin_with_transforms() {
     begin({.uses_transforms = true, .world = "map"});
     transforms(0.0, {{"base_link", "camera_optical", {0, 0, 0.5}}}, true);
   }
-  /// From 9 s to 11 s in steps of 0.05 s: the body is where `position` has it, by two frames.
+  /// Publishes poses from 9 s to 11 s in steps of 0.05 s. `position` gives the body position,
+  /// through two frames.
   void localised(const std::function<Vector3d(double)>& position) {
     for (int step = 0; step <= 40; ++step) {
       const double time = 9.0 + 0.05 * step;
@@ -81,7 +83,7 @@ class Ros2Bridge : public testing::Test {
     }
   }
 
-  /// At the view from 9 s on, in steps of 0.05 s.
+  /// Publishes odometry at the view from 9 s on, in steps of 0.05 s.
   void arrive() {
     for (int step = 0; step <= 40; ++step) odometry(9.0 + 0.05 * step, {5, 0, 0});
   }

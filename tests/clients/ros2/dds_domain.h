@@ -1,4 +1,4 @@
-/// A domain of DDS for one process and those that it starts, on this machine alone.
+/// DDS domain for one process and its child processes, restricted to this machine.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,8 @@
 
 namespace skycap::ros2 {
 
-/// Other processes may be in the same domain by chance; names that begin with topics() differ.
+/// Returns a domain derived from the process id. Other processes may share it by chance, so topic
+/// names must start with topics().
 inline std::uint32_t own_domain() {
   ::setenv("CYCLONEDDS_URI",
            "<CycloneDDS><Domain><General><Interfaces><NetworkInterface name=\"lo\"/></Interfaces>"

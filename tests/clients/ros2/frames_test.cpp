@@ -25,7 +25,7 @@ using testing_support::thrown_message;
 constexpr double rounding = 1e-12;
 constexpr double right_angle = std::numbers::pi / 2;
 
-/// A quarter turn to the left: the body looks north; the sensor is half a metre ahead of it and
+/// The body is rotated by 90° to the left and faces north. The sensor is 0.5 m in front of it and
 /// 0.2 m below.
 TEST(Mount, AlignsOpticalFrameWithREP103) {
   const Mount mount(parse_extrinsic("0.5 0 -0.2 0 0 0 1", ""), Axes::flu);
@@ -39,13 +39,13 @@ TEST(Mount, AlignsOpticalFrameWithREP103) {
   EXPECT_NEAR((world_from_optical.translation() - Vector3d(10, 20.5, 29.8)).norm(), 0.0, 1e-9);
   expect_direction(Vector3d::UnitZ(), Vector3d::UnitY());   // forward is north
   expect_direction(Vector3d::UnitX(), Vector3d::UnitX());   // right is east
-  expect_direction(Vector3d::UnitY(), -Vector3d::UnitZ());  // down is down
+  expect_direction(Vector3d::UnitY(), -Vector3d::UnitZ());  // down is -z
   const Isometry3d back = mount.world_from_body(world_from_optical);
   EXPECT_NEAR((back.translation() - body.position).norm(), 0.0, 1e-9);
   EXPECT_NEAR((back.linear() - body.turn.toRotationMatrix()).norm(), 0.0, rounding);
 }
 
-/// As static transforms of cameras are written in ROS: "0 0 0 -0.5 0.5 -0.5 0.5".
+/// Camera transform as usually published in ROS: "0 0 0 -0.5 0.5 -0.5 0.5".
 TEST(Mount, UsesOpticalFrameUnchanged) {
   const Isometry3d optical =
       Mount(parse_extrinsic("0 0 0 -0.5 0.5 -0.5 0.5", ""), Axes::optical).world_from_optical({});
@@ -54,7 +54,8 @@ TEST(Mount, UsesOpticalFrameUnchanged) {
   EXPECT_NEAR((optical.matrix() - flu.matrix()).norm(), 0.0, rounding);
 }
 
-/// The same by drawing: errors of the body, and where they put the sensor.
+/// Compares with a Monte Carlo simulation: sampled errors of the body and the resulting sensor
+/// positions.
 TEST(Mount, TransformsCovarianceLikeSampledErrors) {
   const Mount mount(parse_extrinsic("2 -1 0.5 0 0 0 1", ""), Axes::flu);
   BodyPose body{.position = {1, 2, 3},
@@ -81,7 +82,7 @@ TEST(Mount, TransformsCovarianceLikeSampledErrors) {
     sum += at_sensor * at_sensor.transpose();
   }
   const Covariance drawn = sum / draws;
-  // Of 200,000 draws variances are known to 0.3 % (one standard deviation).
+  // With 200,000 samples, the standard deviation of the variances is 0.3%.
   EXPECT_LT((drawn - mount.covariance_at_sensor(body).value()).norm(), 0.02 * drawn.norm());
   body.covariance.reset();
   EXPECT_FALSE(mount.covariance_at_sensor(body));
@@ -178,7 +179,7 @@ TEST(PoseHistory, KeepsFirstPoseOfEqualStamps) {
   EXPECT_EQ(history.at(seconds(1.0)).pose.position.x(), 1.0);
 }
 
-/// However far in the future a stamp is, its pose goes with the others.
+/// The oldest received pose is discarded first, even if its time stamp is far in the future.
 TEST(PoseHistory, DiscardsEarliestReceivedPosesWhenFull) {
   PoseHistory history({.max = 3});
   history.add(seconds(1e9), pose_at(0.0));

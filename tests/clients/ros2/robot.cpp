@@ -18,7 +18,7 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using namespace std::chrono_literals;
 
-/// A camera that looks along x of the gimbal, with its right to minus y.
+/// The camera looks along the gimbal's x axis, with its right along -y.
 const Quaterniond optical_on_gimbal(0.5, -0.5, 0.5, -0.5);
 const Vector3d gimbal_on_body(0.1, 0.0, -0.3);
 
@@ -103,7 +103,7 @@ void Robot::send_odometry(Stamp stamp, const PoseMessage& pose) const {
 
 void Robot::send_gimbal(const Quaterniond& sensor) const {
   if (!has_gimbal_) return;
-  constexpr Stamp later = 7'000'000;  // than odometry
+  constexpr Stamp later = 7'000'000;  // delay after odometry
   const SampleTransforms gimbal(clock_ + later, {{"base_link", "gimbal", gimbal_on_body,
                                                   sensor * optical_on_gimbal.conjugate()}});
   transforms_.write(gimbal.message);
@@ -135,12 +135,12 @@ void Robot::stay_at(const PoseMessage& pose, int steps) {
   }
 }
 
-/// The scan as if from elsewhere, twice, in halves; odometry that is none.
+/// Sends the scan with a wrong pose, twice, and in halves, and sends invalid odometry.
 void Robot::send_nonsense(const Measured& measured) {
   const auto& points = measured.scan.points;
   PoseMessage wrong = measured.pose;
   wrong.position.x += 3.0;
-  send_odometry(clock_, wrong);                      // another pose with the same stamp
+  send_odometry(clock_, wrong);                      // a different pose with the same time stamp
   send_odometry(clock_ + 3'600'000'000'000, wrong);  // from the future
   wrong.orientation = {0, 0, 0, 0};
   send_odometry(clock_ - 10'000'000, wrong);
@@ -177,7 +177,7 @@ bool Robot::survey() {
     if (status_.at("state") != "view") return true;
     const auto status_position = status_.at("view").at("position").get<std::vector<double>>();
     if (std::abs(status_position[0] - target_.position.x) > 1e-9)
-      continue;  // its message is on the way
+      continue;  // its message has not arrived yet
     const Measured measured = measure(target_, scans_.size());
     turn_to(target_);
     stay_at(target_, 20);
@@ -186,7 +186,7 @@ bool Robot::survey() {
     for (int attempt = 0; attempt < 20 && status_.at("taken") == taken; ++attempt) {
       send_cloud(clock_, measured.scan.points);
       std::this_thread::sleep_for(20ms);
-      send_cloud(clock_, measured.scan.points);  // twice
+      send_cloud(clock_, measured.scan.points);  // duplicate
       for (int i = 0; i < 20 && status_.at("taken") == taken; ++i) {
         std::this_thread::sleep_for(100ms);
         listen();

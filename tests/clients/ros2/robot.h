@@ -1,6 +1,6 @@
-/// A robot of ROS 2 in a simulated world: it publishes where it is and what it measures, and goes
-/// where it is told. Its body's frame is its camera's optical frame; or the camera is on a gimbal
-/// under the body, which never turns itself, and TF says how that does.
+/// ROS 2 robot in a simulated world. It publishes its pose and its measurements, and moves to the
+/// requested goals. Its body frame is the optical frame of its camera. Optionally, the camera is on
+/// a gimbal below the body. The body then never turns, and TF contains the gimbal rotation.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@
 
 namespace skycap::ros2 {
 
-/// What was published: the same numbers as text and as floats.
+/// A published scan, with its pose as text and its points as floats.
 struct SentScan {
   std::string pose;  ///< x y z qx qy qz qw, all digits
   std::vector<Eigen::Vector3f> points;
@@ -24,15 +24,16 @@ struct SentScan {
 
 class Robot {
  public:
-  /// The text of a mission with a scene; `topics` begins the names of all topics.
+  /// `mission` is the text of a mission with a scene. `topics` is the prefix of all topic names.
   Robot(const std::string& mission, std::uint32_t domain, const std::string& topics,
         bool has_gimbal = false);
 
-  /// Goes to the views it is told, scans there, and sends good messages among bad ones, until the
-  /// survey does not want a view any more. False if that takes more than two minutes.
+  /// Moves to the requested views, scans there, and sends valid and invalid messages until the
+  /// survey requests no more views. Returns false after two minutes.
   bool survey();
 
-  /// Stands still and says so until the status has this text; false after half a minute.
+  /// Stands still and publishes its pose until the status contains `text`. Returns false after 30
+  /// s.
   bool wait_for_status(const std::string& text);
 
   void command(std::string text) const { commands_.write({text.data()}); }
@@ -49,9 +50,9 @@ class Robot {
   void listen();
   Measured measure(const PoseMessage& sensor, std::size_t number) const;
   void stay_at(const PoseMessage& pose, int steps);
-  /// The body above the sensor, and the gimbal on its way there.
+  /// Publishes the transforms of the body above the sensor and of the moving gimbal.
   void send_gimbal(const Eigen::Quaterniond& sensor) const;
-  /// Turns while it measures: a scan that nobody may use.
+  /// Turns while measuring, which makes the scan unusable.
   void turn_to(const PoseMessage& pose);
   void send_nonsense(const Measured& measured);
   void send_odometry(Stamp stamp, const PoseMessage& pose) const;

@@ -1,4 +1,5 @@
-/// Messages as a robot's drivers write them, to be spoiled by tests. Each owns what it points to.
+/// Messages as robot drivers publish them. Tests modify them. Each sample owns the data that its
+/// message points to.
 #pragma once
 
 #include <bit>
@@ -23,7 +24,7 @@ inline Header make_header(Stamp stamp, std::string& frame) {
 
 inline Stamp seconds(double time) { return static_cast<Stamp>(time * 1e9); }
 
-/// Odometry of the body.
+/// Odometry of the robot's body.
 struct SampleOdometry {
   SampleOdometry(Stamp stamp, const Eigen::Vector3d& position,
                  const Eigen::Quaterniond& turn = Eigen::Quaterniond::Identity()) {
@@ -39,7 +40,7 @@ struct SampleOdometry {
   Odometry message{};
 };
 
-/// Frames in their parents, all with one stamp.
+/// Transforms relative to parent frames, with the same time stamp.
 struct SampleTransforms {
   struct Frame {
     std::string parent, name;
@@ -65,7 +66,7 @@ struct SampleTransforms {
   TFMessage message{};
 };
 
-/// A cloud of one row: x y z as float32 and four bytes of something else.
+/// Point cloud with one row: x y z as float32, followed by four unrelated bytes.
 struct SampleCloud {
   SampleCloud(Stamp stamp, const std::vector<Eigen::Vector3f>& points) {
     constexpr std::uint32_t step = 16;
@@ -84,7 +85,7 @@ struct SampleCloud {
   SampleCloud(const SampleCloud&) = delete;
   SampleCloud& operator=(const SampleCloud&) = delete;
 
-  /// To be called when fields or data were changed.
+  /// Must be called after changes to `fields` or `data`.
   void attach() {
     const auto count = static_cast<std::uint32_t>(fields.size());
     const auto bytes = static_cast<std::uint32_t>(data.size());
@@ -98,7 +99,7 @@ struct SampleCloud {
   PointCloud2 message{};
 };
 
-/// An image with rows of any number type.
+/// Image with pixels of any number type.
 struct SampleImage {
   template <typename Number>
   SampleImage(Stamp stamp, std::uint32_t width, const std::vector<Number>& pixels,
@@ -121,7 +122,7 @@ struct SampleImage {
   Image message{};
 };
 
-/// Of a camera of 4 x 2 pixels with fx = 2, fy = 4 and its principal point at (1.5, 0.5).
+/// Camera info for 4 x 2 pixels with fx = 2, fy = 4 and the principal point at (1.5, 0.5).
 struct SampleInfo {
   explicit SampleInfo(std::vector<double> d = {}) : distortion(std::move(d)) {
     message.header = make_header(seconds(1.0), frame);

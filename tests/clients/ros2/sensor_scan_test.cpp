@@ -27,13 +27,13 @@ TEST(CloudScan, KeepsOnlyValidPoints) {
   EXPECT_THAT(make_scan(cloud.message, Axes::optical).xyz, ElementsAre(1, 2, 3, 4, 0, 6));
 }
 
-/// One metre ahead, two to the left, three up: minus two to the right, minus three down.
+/// A point 1 m ahead, 2 m to the left and 3 m up has the optical coordinates x = -2, y = -3, z = 1.
 TEST(CloudScan, ConvertsBodyAxesToOpticalAxes) {
   const SampleCloud cloud(seconds(1.0), {{1, 2, 3}});
   EXPECT_THAT(make_scan(cloud.message, Axes::flu).xyz, ElementsAre(-2, -3, 1));
 }
 
-/// Two rows of two points with four bytes between the rows.
+/// Two rows of two points, with four padding bytes between the rows.
 TEST(CloudScan, ReadsOrganisedCloudRowByRow) {
   SampleCloud cloud(seconds(1.0), {{1, 1, 1}, {2, 2, 2}, {3, 3, 3}, {4, 4, 4}});
   cloud.data.insert(cloud.data.begin() + 32, 4, 0xFF);

@@ -14,7 +14,7 @@ namespace skycap::ros2 {
 namespace {
 
 std::mutex guard;
-std::optional<std::mt19937> random_bits;  // nothing: all is sent as it is
+std::optional<std::mt19937> random_bits;  // empty: packets are sent unchanged
 std::size_t corrupted = 0;
 
 std::uint32_t below(std::size_t limit) {
@@ -28,14 +28,15 @@ Number number_at(const std::string& packet, std::size_t at) {
   return number;
 }
 
-/// Other bytes, other numbers where a length may be, or fewer bytes with any number after them.
+/// Replaces random bytes, inserts extreme numbers where a length may be, or shortens the data and
+/// appends a random number.
 void corrupt(std::string& packet, std::size_t begin, std::size_t end) {
   constexpr std::array<std::uint32_t, 6> extremes{0, 1, 0x7fffffff, 0x80000000, 0xfffffffe, ~0U};
   if (end < begin + 8 || end > packet.size()) return;
   ++corrupted;
   const std::size_t count = 1 + below(4);
   for (std::size_t i = 0; i < count; ++i) {
-    // The first four bytes say how the others are to be read.
+    // The first four bytes are the encapsulation header, which decides how the rest is read.
     const std::size_t from = below(10) == 0 ? begin : begin + 4;
     const std::uint32_t extreme = below(2) == 0 ? extremes[below(extremes.size())] : below(4096);
     const std::size_t word = from + 4 * below((end - from) / 4);
@@ -47,8 +48,8 @@ void corrupt(std::string& packet, std::size_t begin, std::size_t end) {
   }
 }
 
-/// The serialised data in a packet of RTPS 2.x: of submessages DATA and DATA_FRAG whose writers are
-/// users', not those of discovery. The last one may end too soon.
+/// Corrupts the serialised data in an RTPS 2.x packet: DATA and DATA_FRAG submessages of user
+/// writers, not of discovery writers. The last submessage may be incomplete.
 void corrupt_data(std::string& packet) {
   constexpr std::size_t packet_header = 20, header = 4;
   constexpr unsigned char data = 0x15, data_frag = 0x16;
@@ -93,7 +94,7 @@ std::size_t CorruptedWire::count() {
 
 }  // namespace skycap::ros2
 
-/// In place of the C library's: DDS calls it, too.
+/// Overrides sendmsg() of the C library, which DDS calls.
 extern "C" ssize_t sendmsg(int socket, const msghdr* message, int flags) {
   using skycap::ros2::guard, skycap::ros2::random_bits;
   using Send = ssize_t (*)(int, const msghdr*, int);

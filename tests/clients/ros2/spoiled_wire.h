@@ -1,5 +1,5 @@
-/// Messages that are spoiled on the wire: while one of these lives, what this process sends of its
-/// topics over RTPS keeps its headers, and random bytes of the serialised data in it are others.
+/// Corrupts messages on the wire. While an instance exists, random bytes of the serialised topic
+/// data that this process sends through RTPS are changed. The headers remain valid.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ class CorruptedWire {
   CorruptedWire& operator=(const CorruptedWire&) = delete;
   ~CorruptedWire();
 
-  /// Pieces of data that were spoiled so far.
+  /// Returns the number of data submessages corrupted so far.
   static std::size_t count();
 };
 

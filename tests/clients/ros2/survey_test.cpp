@@ -1,5 +1,4 @@
-// The programs themselves: skycap serve, skycap_ros2, and here a robot that knows nothing but
-// topics.
+// End-to-end test of skycap serve and skycap_ros2 with a simulated robot that uses only topics.
 
 #include <chrono>
 #include <csignal>
@@ -40,7 +39,7 @@ using tests::read_content;
 using tests::TestFolder;
 using namespace std::chrono_literals;
 
-/// A program that runs beside us; what it says goes to a file.
+/// Child process whose output is redirected to a file.
 class Program {
  public:
   Program(std::vector<std::string> words, std::string log) : log_(std::move(log)) {
@@ -66,7 +65,8 @@ class Program {
 
   void signal(int number) const { ::kill(process_, number); }
 
-  /// Nothing if it has not ended after a minute; minus the signal that ended it.
+  /// Returns the exit code, or the negative signal number. Empty if the process is still running
+  /// after a minute.
   std::optional<int> exit_code() {
     for (int i = 0; i < 600; ++i) {
       int status = 0;
@@ -88,7 +88,7 @@ class Program {
 
 class Ros2LiveSurvey : public testing::Test {
  protected:
-  /// Half a minute for `serve` to come up.
+  /// Starts `serve` and waits up to 30 s for it.
   void serve(const std::string& mission) {
     folder_.write("m.yaml", mission);
     server_.emplace(
@@ -114,7 +114,7 @@ class Ros2LiveSurvey : public testing::Test {
   std::optional<Program> server_, bridge_;
 };
 
-/// A PLY of floats.
+/// Returns a binary PLY file with float coordinates.
 std::string make_ply(const std::vector<Eigen::Vector3f>& points) {
   std::string text = "ply\nformat binary_little_endian 1.0\nelement vertex " +
                      std::to_string(points.size()) +
@@ -123,8 +123,8 @@ std::string make_ply(const std::vector<Eigen::Vector3f>& points) {
                      points.size() * sizeof points[0]);
 }
 
-/// Through DDS, with nonsense between, comes what `skycap next` makes of the same scans and poses:
-/// the journal has every scan's digest and pose and every view that was proposed.
+/// A survey through DDS with invalid messages in between equals `skycap next` with the same scans
+/// and poses. The journal contains the digest and pose of each scan and each proposed view.
 TEST_F(Ros2LiveSurvey, MatchesNextCommandWithSameScans) {
   const std::string mission = short_mission(tests::flight_mission());
   serve(mission);
@@ -151,7 +151,7 @@ TEST_F(Ros2LiveSurvey, MatchesNextCommandWithSameScans) {
   EXPECT_THAT(bridge_->log_text(), HasSubstr("warning: cloud: "));
 }
 
-/// The body never turns; the gimbal does, and measures on the way, too.
+/// The body never turns. The gimbal turns, and the camera also measures while it moves.
 TEST_F(Ros2LiveSurvey, AimsGimbalCameraByTransforms) {
   const std::string mission = short_mission(tests::quick_mission(), "see++");
   serve(mission);
@@ -179,7 +179,7 @@ TEST_F(Ros2LiveSurvey, ReportsStoppedStatusOnSignal) {
     bridge_->signal(signal);
     EXPECT_TRUE(robot.wait_for_status("stopped"));
     EXPECT_EQ(bridge_->exit_code(), 0) << bridge_->log_text();
-    std::this_thread::sleep_for(1s);  // until the server has noticed
+    std::this_thread::sleep_for(1s);  // wait until the server has noticed
   }
 }
 
@@ -206,7 +206,7 @@ TEST_F(Ros2LiveSurvey, RejectsMissingServerAndInvalidTopics) {
   EXPECT_THAT(bridge_->log_text(), HasSubstr("the topic 'points' must begin with '/'"));
 }
 
-/// What a driver sends, over and over.
+/// Publishes all kinds of driver messages repeatedly.
 void send_all_kinds(const Participant& participant, const std::string& topics, int rounds) {
   const Writer<Odometry> odometry(participant, topics + "/odom", Writing::sensor);
   const Writer<TFMessage> transforms(participant, topics + "/tf", Writing::sensor);
@@ -215,7 +215,7 @@ void send_all_kinds(const Participant& participant, const std::string& topics, i
   const Writer<Image> images(participant, topics + "/depth", Writing::sensor);
   const Writer<CameraInfo> infos(participant, topics + "/camera_info", Writing::sensor);
   const Writer<String> commands(participant, topics + "/skycap/command", Writing::command);
-  std::this_thread::sleep_for(1s);  // they find their readers
+  std::this_thread::sleep_for(1s);  // wait until the readers are matched
   const CorruptedWire wire(7);
   std::string take = "take";
   std::vector<Eigen::Vector3f> points(40, {0.1F, 0.2F, 2.0F});
@@ -234,8 +234,8 @@ void send_all_kinds(const Participant& participant, const std::string& topics, i
   }
 }
 
-/// Sound RTPS around data that is none. SPOILED_ROUNDS is how often each topic is written to, and
-/// ROS2_UNDER a program with its options to run the bridge under, such as valgrind.
+/// Valid RTPS packets with corrupted data. SPOILED_ROUNDS sets the number of messages for each
+/// topic. ROS2_UNDER sets a command that runs the bridge, such as valgrind with its options.
 TEST_F(Ros2LiveSurvey, SurvivesCorruptedMessages) {
   const char* rounds = std::getenv("SPOILED_ROUNDS");
   serve(short_mission(tests::quick_mission()));
@@ -265,7 +265,7 @@ TEST_F(Ros2LiveSurvey, SurvivesCorruptedMessages) {
     EXPECT_THAT(bridge_->log_text(), HasSubstr("warning: "));
     listen();
     EXPECT_THAT(status, HasSubstr("stopped"));
-    std::this_thread::sleep_for(1s);  // until the server has noticed
+    std::this_thread::sleep_for(1s);  // wait until the server has noticed
   }
 }
 

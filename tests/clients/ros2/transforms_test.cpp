@@ -1,4 +1,4 @@
-// Frames of TF: chains of them, interpolated, and whatever else comes.
+// TF frames: chains, interpolation and invalid transforms.
 #include "clients/ros2/transforms.h"
 
 #include <cmath>
@@ -44,7 +44,7 @@ class TransformTree : public testing::Test {
   Transforms tree_{HistoryConfig{}};
 };
 
-/// A mast that stands, a gimbal on it that turns, and a camera on that.
+/// A static mast, a rotating gimbal on the mast, and a camera on the gimbal.
 TEST_F(TransformTree, ChainsStaticAndMovingTransforms) {
   add(0.0, {"base_link", "mast", {0, 0, 2}, about_z(0)}, true);
   add(10.0, {"mast", "gimbal", {0, 0, 0}, about_z(0)});
@@ -58,11 +58,12 @@ TEST_F(TransformTree, ChainsStaticAndMovingTransforms) {
   const PoseMatch back = at("camera", "base_link", 10.05);
   ASSERT_EQ(back.state, State::known);
   EXPECT_LT((half.pose.turn * back.pose.position + half.pose.position).norm(), 1e-12);
-  EXPECT_EQ(at("base_link", "camera", 10.3).state, State::open);  // may still come
-  EXPECT_EQ(at("base_link", "mast", 99.0).state, State::known);   // for ever
+  // a later transform may still arrive.
+  EXPECT_EQ(at("base_link", "camera", 10.3).state, State::open);
+  EXPECT_EQ(at("base_link", "mast", 99.0).state, State::known);  // static transforms do not expire
 }
 
-/// Neither need be above the other: base_footprint is often below base_link.
+/// Neither frame needs to be an ancestor of the other: base_footprint is often below base_link.
 TEST_F(TransformTree, ConnectsSiblingBranches) {
   add(0.0, {"base_link", "base_footprint", {0, 0, -0.5}}, true);
   add(0.0, {"base_link", "camera", {1, 0, 0}, about_z(90)}, true);
@@ -119,7 +120,7 @@ TEST_F(TransformTree, RejectsInvalidTransforms) {
   EXPECT_THAT(error_message(10.1, {"x", "y", {none, 0, 0}}), HasSubstr("is not finite"));
   EXPECT_THAT(error_message(10.1, {"x", "y", {1e200, 0, 0}}), HasSubstr("more than 1e7 m"));
   EXPECT_THAT(error_message(10.1, {"x", "y", {0, 0, 0}, {0, 0, 0, 0}}), HasSubstr("quaternion"));
-  EXPECT_EQ(at("x", "y", 10.1).state, State::open);  // nothing of them stayed
+  EXPECT_EQ(at("x", "y", 10.1).state, State::open);  // none of them was stored
   const SampleTransforms nameless(seconds(1.0), {{"x", "y"}});
   TransformStamped transform = nameless.transforms.front();
   transform.child_frame_id = nullptr;
@@ -134,7 +135,7 @@ TEST_F(TransformTree, LimitsNumberOfFramesAndPoses) {
   for (std::size_t i = 0; i <= Transforms::max_poses; ++i) {
     add(2.0 + 0.01 * static_cast<double>(i), {"map", "f0"});
   }
-  EXPECT_EQ(at("map", "f0", 1.0).state, State::open);  // gone
+  EXPECT_EQ(at("map", "f0", 1.0).state, State::open);  // discarded
   EXPECT_EQ(at("map", "f0", 2.01).state, State::known);
 }
 

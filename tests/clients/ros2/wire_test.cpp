@@ -1,6 +1,7 @@
-// Our IDL against the definitions of ROS 2's messages: what DDS makes of a message is compared with
-// bytes written here field by field, in the order and with the types of the .msg files (plain CDR,
-// little-endian: each number at a multiple of its size from behind the four bytes of the header).
+// Compares Skycap's IDL with the message definitions of ROS 2. The serialisation by DDS is compared
+// with bytes that this test writes field by field, in the order and with the types of the .msg
+// files. The encoding is plain CDR, little-endian: each number is aligned to its size, counted from
+// the end of the four-byte header.
 
 #include <chrono>
 #include <cstring>
@@ -20,7 +21,7 @@
 namespace skycap::ros2 {
 namespace {
 
-/// Bytes as the rules of CDR have them.
+/// Serialises values according to the CDR alignment rules.
 class Cdr {
  public:
   template <typename Number>
@@ -29,7 +30,7 @@ class Cdr {
     bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
     return *this;
   }
-  Cdr& string(const std::string& text) {  // its length with the null behind it
+  Cdr& string(const std::string& text) {  // length including the terminating null
     number(static_cast<std::uint32_t>(text.size() + 1));
     bytes_ += text + '\0';
     return *this;
@@ -41,7 +42,7 @@ class Cdr {
   Cdr& header(std::int32_t sec, std::uint32_t nanosec, const std::string& frame) {
     return number(sec).number(nanosec).string(frame);
   }
-  /// With the encapsulation: CDR_LE, and how many bytes were added to come to a multiple of four.
+  /// Returns the bytes with the encapsulation header (CDR_LE) and the number of padding bytes.
   std::string whole() const {
     const std::size_t padding = (4 - bytes_.size() % 4) % 4;
     return std::string{'\0', '\1', '\0', static_cast<char>(padding)} + bytes_ +
@@ -52,7 +53,7 @@ class Cdr {
   std::string bytes_;
 };
 
-/// What DDS sends for a message; empty if nothing came within ten seconds.
+/// Returns the bytes that DDS sends for a message. Empty if nothing arrives within 10 s.
 template <typename Message>
 std::string sent(const Message& message) {
   const Participant participant(own_domain());
@@ -138,7 +139,7 @@ TEST(Wire, SerializesOdometry) {
   EXPECT_EQ(sent(odometry.message), expected.whole());
 }
 
-/// Header, Pose; and of a path: header, PoseStamped[].
+/// Pose: Header, Pose. Path: Header, PoseStamped[].
 TEST(Wire, SerializesPosesAndPaths) {
   std::string frame = "map";
   std::vector<PoseStamped> poses(2);
@@ -168,7 +169,7 @@ TEST(Wire, SerializesString) {
   EXPECT_EQ(sent(String{text.data()}), Cdr().string("take").whole());
 }
 
-/// By these names DDS finds topics; ROS 2 makes them of package, folder and type.
+/// DDS matches topics by type name. ROS 2 builds the type name from package, folder and message.
 TEST(Wire, UsesRos2TypeNames) {
   EXPECT_STREQ(descriptor<PointCloud2>().m_typename, "sensor_msgs::msg::dds_::PointCloud2_");
   EXPECT_STREQ(descriptor<Image>().m_typename, "sensor_msgs::msg::dds_::Image_");

@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// ---- a numerical twin: it integrates the jerk, and finds the phases by trying -----------------
+// ---- numerical reference: integrates the jerk and finds the phases by search ------------------
 
 constexpr int steps = 4000;
 
@@ -26,8 +26,8 @@ struct Covered {
   double time = 0.0, distance = 0.0, speed = 0.0;
 };
 
-/// From rest up to a speed: the jerk rises as a raised cosine in `rise` to `jerk`, holds, falls;
-/// the acceleration holds; the jerk does the same downwards.
+/// Accelerates from rest. The jerk rises as a raised cosine in `rise` to `jerk`, stays constant and
+/// falls again. After a phase of constant acceleration, the jerk does the same with opposite sign.
 Covered speed_up(double jerk, double rise, double jerk_hold, double acceleration_hold) {
   const double block = 2.0 * rise + jerk_hold;
   Covered state{2.0 * block + acceleration_hold};
@@ -58,12 +58,13 @@ double largest_that(double max, const std::function<bool(double)>& holds) {
   return low;
 }
 
-/// The same motion as s_curve_time() states in closed form.
+/// Computes the closed form in s_curve_time() numerically.
 double integrated_s_curve(double distance, const LegLimits& limits, double jerk, double jerk_rise) {
   const auto fits = [&](const Covered& state) {
     return state.speed <= limits.speed && 2.0 * state.distance <= distance;
   };
-  // First the rise of the jerk, whose steepness stays, then its hold, then the acceleration's.
+  // First the jerk rise, whose slope is fixed, then the constant jerk, then the constant
+  // acceleration.
   const double share = largest_that(1.0, [&](double s) {
     return s * s * jerk * jerk_rise <= limits.acceleration &&
            fits(speed_up(s * jerk, s * jerk_rise, 0.0, 0.0));
@@ -94,7 +95,8 @@ TEST(SCurve, MatchesNumericalIntegration) {
   }
 }
 
-// Without a rise of the jerk it is the motion of seven phases, whose time is another closed form.
+// With a jerk rise time of zero, the motion has seven phases, whose duration has another closed
+// form.
 TEST(SCurve, MatchesSevenPhasesWithoutJerkRiseTime) {
   for (const double distance : {0.01, 0.5, 3.0, 20.0, 200.0}) {
     for (const double speed : {0.5, 4.0, 15.0}) {
@@ -110,9 +112,10 @@ TEST(SCurve, MatchesClosedFormOnLongLegs) {
   EXPECT_EQ(s_curve_time(0.0, {4.0, 2.5}, 1.0, 0.3), 0.0);
 }
 
-// ---- PX4's law --------------------------------------------------------------------------------
+// ---- PX4 braking law --------------------------------------------------------------------------
 
-/// Steps through time: jerk-limited speeding up, then the speed that the distance left allows.
+/// Integrates in time steps: jerk-limited acceleration, then the speed that the remaining distance
+/// allows.
 double stepped_braking(double distance, const LegLimits& limits, double jerk) {
   const double a = limits.acceleration, b = 4.0 * a * a / jerk, dt = 2e-5;
   double gone = 0.0, time = 0.0;
@@ -120,7 +123,8 @@ double stepped_braking(double distance, const LegLimits& limits, double jerk) {
     const double left = distance - gone;
     return std::min(limits.speed, 0.5 * (std::sqrt(b * b + 8.0 * a * left) - b));
   };
-  // The speed to reach is where both meet: try, from slow to fast, which ramp still meets the law.
+  // The peak speed is where the two meet. The search finds the largest target speed whose ramp
+  // still meets the braking law.
   const auto ramp_to = [&](double target, double t) {
     return rest_to_rest_state(1e9, target, a, jerk, t);
   };
@@ -148,18 +152,18 @@ TEST(BrakingDistance, MatchesNumericalIntegration) {
   EXPECT_EQ(braking_distance_time(0.9 * acceptance_radius, {4.0, 3.0}, 4.0), 0.0);
 }
 
-// ---- flown ------------------------------------------------------------------------------------
+// ---- simulated flights ------------------------------------------------------------------------
 
 struct Hop {
   double horizontal, vertical;
 };
 struct LoggedSortie {
-  double seconds;  ///< in ArduCopter's simulator, from take-off to disarmed
+  double seconds;  ///< in ArduCopter's simulator, from take-off to disarming
   std::vector<Hop> hops;
 };
 
-/// Three sorties that were flown in ArduCopter 4.8 at 4 m/s with its defaults: from 5 m above the
-/// pad from stop to stop, a second of hold at each, and a landing from 5 m.
+/// Returns three sorties in the ArduCopter 4.8 simulator at 4 m/s with default parameters. Each
+/// starts 5 m above the pad, stops for 1 s at each waypoint, and lands from 5 m.
 const std::vector<LoggedSortie>& logged_sorties() {
   static const std::vector<LoggedSortie> sorties{
       {191.0,
@@ -199,7 +203,7 @@ const std::vector<LoggedSortie>& logged_sorties() {
   return sorties;
 }
 
-// The bar: within 5 % of the times that were flown.
+// Requirement: within 5% of the logged times.
 TEST(ArduCopter, PredictsLoggedFlightTimesWithinFivePercent) {
   const Motion motion(vehicle_profile("generic_ardupilot"), {.cruise_speed = 4.0});
   for (const LoggedSortie& sortie : logged_sorties()) {

@@ -1,4 +1,4 @@
-// Logs of a flight whose vehicle and wind are known: what is fitted must be what flew.
+// Simulated logs with a known vehicle and wind. The calibration must recover both.
 #include "flight/calibration/calibration.h"
 
 #include <cmath>
@@ -20,9 +20,9 @@ using Eigen::Vector3d;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-constexpr double period = 0.1;  ///< between samples [s]
+constexpr double period = 0.1;  ///< sampling period [s]
 
-/// The one that flies: not quite the preset.
+/// Returns the vehicle that flies in the log. It differs slightly from the preset.
 Vehicle reference_vehicle() {
   Vehicle vehicle = vehicle_profile("generic_ardupilot");
   vehicle.endurance_min = 22.0;
@@ -31,7 +31,8 @@ Vehicle reference_vehicle() {
   return vehicle;
 }
 
-/// Hover, climb, out at several speeds in four directions, descend, hover: eight minutes.
+/// Returns eight minutes of velocities: hover, climb, legs at several speeds in four directions,
+/// descent and hover.
 std::vector<Vector3d> velocities() {
   std::vector<Vector3d> all;
   const auto fly = [&](const Vector3d& velocity, double time) {
@@ -50,7 +51,7 @@ std::vector<Vector3d> velocities() {
   return all;
 }
 
-/// `noise` is of the measured power [W].
+/// Simulates a log. `noise` is the standard deviation of the measured power [W].
 FlightLog make_log(const Vehicle& vehicle, const Vector2d& wind, double noise) {
   const Motion motion(vehicle, {.wind = wind});
   std::mt19937_64 random(5);
@@ -75,7 +76,7 @@ TEST(Calibration, RecoversVehicleAndWindFromNoiseFreeLog) {
   EXPECT_EQ(found.vehicle.energy_error, min_energy_error);
 }
 
-// Single readings that are off by a tenth of the power leave its energy within a percent.
+// Noise of 10% in single power readings leaves the energy within 1%.
 TEST(Calibration, PredictsPowerFromNoisyLog) {
   const Calibration found = calibrate(make_log(reference_vehicle(), {2.0, -1.0}, 25.0),
                                       vehicle_profile("generic_ardupilot"), 1.225);
@@ -87,7 +88,8 @@ TEST(Calibration, PredictsPowerFromNoisyLog) {
   EXPECT_LT(found.energy_error, 0.03);
 }
 
-// A model that cannot say what happened says so by its error: power that swings by a third.
+// The reported error is large if the model cannot explain the log: here the power oscillates by a
+// third.
 TEST(Calibration, ReportsLargeEnergyErrorWhenModelDoesNotFit) {
   FlightLog log = make_log(reference_vehicle(), {0, 0}, 0.0);
   for (std::size_t i = 0; i < log.samples.size(); ++i) {
@@ -127,7 +129,8 @@ TEST(Calibration, ReadsLimitsFromLoggedParameters) {
   EXPECT_NEAR(found.vehicle.mode.yaw_rate, M_PI / 2.0, 1e-12);
 }
 
-// Legs of 20 m that take 0.8 s more than the law says; every second waypoint is passed.
+// Legs of 20 m that take 0.8 s longer than the motion law predicts. Every second waypoint is flown
+// through without a stop.
 TEST(Calibration, ComputesSettleTimeFromLegDurations) {
   FlightLog log = make_log(reference_vehicle(), {0, 0}, 0.0);
   const LocalFrame frame({51.0, 7.0, 0.0});

@@ -1,4 +1,4 @@
-/// Writes dataflash logs by AP_Logger's description of the format.
+/// Writes DataFlash logs according to the format description of AP_Logger.
 #pragma once
 
 #include <cstdint>
@@ -7,13 +7,13 @@
 
 namespace skycap::flight {
 
-/// A type of messages as a log describes it.
+/// Message type as described in a log.
 struct LogFormat {
   std::uint8_t type = 0;
   std::string name, letters, labels;  ///< labels separated by commas
 };
 
-/// The size of its messages, header included.
+/// Returns the message size [bytes] including the header.
 std::size_t compute_size(const LogFormat& format);
 
 class DataflashWriter {
@@ -21,7 +21,7 @@ class DataflashWriter {
   /// Adds the FMT message.
   void describe(const LogFormat& format);
 
-  /// Adds a message of numbers by their labels, and of one text; what is not given is zero.
+  /// Adds a message with numbers by label and one optional text. Missing values are 0.
   void add(const LogFormat& format, const std::map<std::string, double>& values,
            const std::string& text = "");
 

@@ -17,7 +17,7 @@ using testing::HasSubstr;
 using testing::SizeIs;
 using testing::ThrowsMessage;
 
-/// Writes a dataflash log by AP_Logger's description of the format.
+/// Writes a DataFlash log according to the format description of AP_Logger.
 class DataflashWriter {
  public:
   void format(std::uint8_t type, std::uint8_t size, const std::string& name,
@@ -56,7 +56,7 @@ std::string sample_log() {
     log.begin(11);
     log.put(time), log.put(which), log.put(20.0F), log.put(amperes);
   };
-  battery(500'000, 0, 3.0F);  // before the first state
+  battery(500'000, 0, 3.0F);  // before the first estimator state
   state(0, 1.0F), state(1, 9.0F);
   battery(1'000'000, 0, 10.0F);
   battery(1'100'000, 1, 5.0F);
@@ -73,7 +73,7 @@ TEST(DataflashLog, ReadsPowerVelocityParametersAndCommands) {
   EXPECT_DOUBLE_EQ(log.samples[0].time, 1.0);
   EXPECT_DOUBLE_EQ(log.samples[0].power, 200.0);
   EXPECT_EQ(log.samples[0].velocity, Eigen::Vector3d(2.0, 1.0, 0.5));
-  EXPECT_DOUBLE_EQ(log.samples[1].power, 300.0);  // both batteries
+  EXPECT_DOUBLE_EQ(log.samples[1].power, 300.0);  // sum of both batteries
   ASSERT_THAT(log.parameters, SizeIs(1));
   EXPECT_EQ(log.parameters[0].name, "WP_JERK");
   EXPECT_EQ(log.parameters[0].value, 1.5);
@@ -84,7 +84,7 @@ TEST(DataflashLog, ReadsPowerVelocityParametersAndCommands) {
   EXPECT_DOUBLE_EQ(log.commands[0].height, 30.5);
 }
 
-/// Two samples, a parameter and a command.
+/// The log contains two samples, one parameter and one command.
 TEST(DataflashLog, RejectsMoreEntriesThanTheLimit) {
   EXPECT_THAT(read_dataflash(sample_log(), 4).samples, SizeIs(2));
   EXPECT_THAT(
@@ -99,7 +99,7 @@ TEST(DataflashLog, SkipsDamagedBytes) {
   EXPECT_THAT(read_dataflash(good.substr(0, good.size() - 3)).samples, SizeIs(2));
 }
 
-// Property: whatever the bytes, it is an answer or an Error.
+// Property: random bytes yield a result or an Error.
 TEST(DataflashLog, ReadsOrRejectsRandomlyCorruptedLogs) {
   std::mt19937_64 random(3);
   for (int i = 0; i < 2000; ++i) {

@@ -1,5 +1,5 @@
-// Logs as ArduPilot wrote them from 2014 to 2026, undamaged and damaged: the power that is fitted
-// is the power that was flown, or the log is refused.
+// ArduPilot log layouts from 2014 to 2026, intact and damaged. The fitted power equals the true
+// power, or the log is rejected.
 #include <cmath>
 #include <random>
 
@@ -22,7 +22,7 @@ using Eigen::Vector3d;
 using testing::HasSubstr;
 using testing_support::thrown_message;
 
-/// How a version describes the messages that calibration reads.
+/// Definitions of the messages that calibration reads, in one firmware version.
 struct Layout {
   const char* name;
   LogFormat battery, estimator, parameter, item;
@@ -68,7 +68,7 @@ const std::vector<Layout>& layouts() {
   return all;
 }
 
-/// The one that flies: hovers at that power [W].
+/// Returns the vehicle that flies in the log and hovers at this power [W].
 Vehicle reference_vehicle(double hover_power) {
   Vehicle vehicle = vehicle_profile("generic_ardupilot");
   vehicle.avionics_power = 0.1 * hover_power;
@@ -77,7 +77,8 @@ Vehicle reference_vehicle(double hover_power) {
   return vehicle;
 }
 
-/// Hover, then level legs at two speeds in four directions, twice; then a climb.
+/// Returns the velocity of the test flight: hover, two rounds of level legs in four directions at
+/// two speeds, and a climb.
 Vector3d velocity_at(double time) {
   if (time < 60.0) return Vector3d::Zero();
   if (time > 320.0) return {0, 0, 2.0};
@@ -92,7 +93,7 @@ double time_factor(const LogFormat& format) {
   return format.labels.starts_with("TimeMS") ? 1e3 : 1e6;
 }
 
-/// A log with ten readings a second; `measure_amperes` changes what the current sensor says.
+/// Returns a log with ten samples per second. `measure_amperes` modifies the current reading.
 template <class Amperes>
 std::string make_log(const Layout& layout, const Vehicle& vehicle, const Amperes& measure_amperes) {
   const Motion motion(vehicle, {.wind = {1.0, -2.0}});
@@ -112,7 +113,7 @@ std::string make_log(const Layout& layout, const Vehicle& vehicle, const Amperes
                                {"VN", velocity.y()},
                                {"VE", velocity.x()},
                                {"VD", -velocity.z()}});
-    const double unit = is_old ? 100.0 : 1.0;  // hundredths, as integers
+    const double unit = is_old ? 100.0 : 1.0;  // stored as integers in hundredths
     log.add(layout.battery,
             {{is_old ? "TimeMS" : "TimeUS", time_factor(layout.battery) * (time + 100.01)},
              {"Volt", unit * volts},
@@ -149,7 +150,7 @@ TEST_P(LogLayouts, YieldHoverPowerOfVehicle) {
 }
 
 struct Damage {
-  std::size_t lost = 0, corrupted = 0;  ///< bytes
+  std::size_t lost = 0, corrupted = 0;  ///< number of bytes
 };
 
 std::string damaged(std::string log, const Damage& damage, std::uint64_t seed) {
@@ -166,7 +167,7 @@ std::string damaged(std::string log, const Damage& damage, std::uint64_t seed) {
   return kept;
 }
 
-// Up to one byte in a hundred, lost or spoiled.
+// Up to 1% of the bytes are lost or corrupted.
 TEST_P(LogLayouts, YieldHoverPowerFromDamagedLogsOrReject) {
   const Vehicle vehicle = reference_vehicle(250.0);
   const std::string log = make_log(layout(), vehicle);
@@ -186,12 +187,13 @@ TEST_P(LogLayouts, YieldHoverPowerFromDamagedLogsOrReject) {
       EXPECT_THAT(error_message, testing::Not(HasSubstr("scatters"))) << share;
     }
   }
-  EXPECT_GE(read, 6);  // the rest has lost the description of its messages
+  EXPECT_GE(read, 6);  // the others have lost their FMT messages
 }
 
 const Layout& newest() { return layouts().back(); }
 
-// A model whose rotors cannot be better than momentum theory: the hover is right, and it is said.
+// The rotors of the model cannot be better than momentum theory. The hover power is still right,
+// and a warning is given.
 TEST(CalibrationBounds, KeepsHoverPowerAndWarnsAtRotorEfficiencyLimit) {
   Vehicle vehicle = reference_vehicle(250.0);
   vehicle.avionics_power = 110.0;
@@ -207,7 +209,8 @@ TEST(CalibrationBounds, KeepsHoverPowerAndWarnsAtRotorEfficiencyLimit) {
   }
 }
 
-// One leg north and one east cannot tell wind from drag: there is none then, and hover is right.
+// One leg north and one leg east cannot separate wind from drag. The wind is then zero, and the
+// hover power is right.
 TEST(CalibrationBounds, EstimatesNoWindWhenLogCannotSeparateItFromDrag) {
   const Vehicle vehicle = reference_vehicle(215.0);
   const Motion motion(vehicle, {});
@@ -230,7 +233,7 @@ TEST(CalibrationBounds, WarnsWhenDragAreaIsAtItsLimit) {
   EXPECT_THAT(found.warnings, testing::Contains(HasSubstr("drag_area is at its limit")));
 }
 
-// Whatever the preset's endurance says of its own mass.
+// The result does not depend on the endurance that the preset states for its own mass.
 TEST(CalibrationMass, IsAppliedWithoutChangingRotorDiameter) {
   for (const double mass : {1.0, 1.5, 2.5, 3.0}) {
     Vehicle vehicle = reference_vehicle(300.0);
@@ -243,7 +246,7 @@ TEST(CalibrationMass, IsAppliedWithoutChangingRotorDiameter) {
   }
 }
 
-// Rotors of 0.3 m take 369 W to hold 4 kg up.
+// Rotors with a diameter of 0.3 m need 369 W to carry 4 kg.
 TEST(CalibrationMass, EnlargesRotorsThatCannotCarryIt) {
   Vehicle vehicle = reference_vehicle(300.0);
   vehicle.mass = 4.0;
@@ -274,7 +277,7 @@ TEST(CalibrationErrors, NameTheCause) {
           "2.00 kg on 4 rotors of 0.300 m need at least 130.5 W; set the take-off mass (--mass)"));
   EXPECT_THAT(error_message([&](double amperes) {
                 static int count = 0;
-                const double swing = count++ / 60 % 2 == 0 ? 1.7 : 1.0;  // each 6 s
+                const double swing = count++ / 60 % 2 == 0 ? 1.7 : 1.0;  // period: 6 s
                 return swing * amperes;
               }),
               HasSubstr("does not fit a power model: the residual scatter"));
@@ -311,7 +314,8 @@ TEST(ForeignLogs, AreRejectedWithTheNameOfTheirFormat) {
   EXPECT_THAT(kind(""), HasSubstr("it is empty"));
 }
 
-// Master since October 2024: CMD lists the mission at its upload, MISE what is executed.
+// ArduPilot master since October 2024: CMD lists the mission at its upload, MISE lists executed
+// items.
 TEST(ExecutedItems, AreReadFromMiseMessagesWhenLogged) {
   DataflashWriter log;
   const Layout& layout = newest();
@@ -331,7 +335,7 @@ TEST(ExecutedItems, AreReadFromMiseMessagesWhenLogged) {
   EXPECT_DOUBLE_EQ(read.commands[2].time, 4.0);
 }
 
-// Legs of one time are a list, not a flight: nothing is said of how long they settle.
+// Legs with equal time stamps are an uploaded list and not a flight. They contain no settle times.
 TEST(ExecutedItems, AreNotUsedForSettleTimeWithoutTimes) {
   FlightLog log = read_dataflash(make_log(newest(), reference_vehicle(250.0)));
   const LocalFrame frame({51.0, 7.0, 0.0});
@@ -346,7 +350,7 @@ TEST(ExecutedItems, AreNotUsedForSettleTimeWithoutTimes) {
   EXPECT_EQ(found.vehicle.mode.settle_time, vehicle_profile("generic_ardupilot").mode.settle_time);
 }
 
-// A vehicle that was switched off and on writes a second flight whose times begin again.
+// A vehicle that is restarted logs a second flight whose times start again at zero.
 TEST(DataflashTimes, IncreaseAcrossVehicleRestart) {
   const Vehicle vehicle = reference_vehicle(250.0);
   const std::string log = make_log(newest(), vehicle);

@@ -1,8 +1,9 @@
-/// An independent judge of a leg's clearance: bisection on CGAL's point distances. It shares
-/// neither the tree nor the distance formulas with the product.
+/// Independent check of a leg's clearance: bisection on CGAL point distances. It shares neither the
+/// tree nor the distance formulas with the product.
 ///
-/// Distance to a closed set is 1-Lipschitz, so over a piece of length L whose ends are at distances
-/// d0 and d1 it is at least (d0 + d1 - L) / 2, and an end nearer than the clearance is a witness.
+/// The distance to a closed set is 1-Lipschitz. On a piece of length L with end distances d0 and d1
+/// it is therefore at least (d0 + d1 - L) / 2. An end point closer than the clearance is a
+/// counterexample.
 #pragma once
 
 #include <memory>
@@ -21,7 +22,7 @@ class CgalOracle {
 
   double distance(const Eigen::Vector3d& point) const;
 
-  /// `grazing`: undecided when the pieces are shorter than 10 nm.
+  /// Returns `grazing` if pieces shorter than 10 nm are still undecided.
   Verdict classify(const Segment& leg, double clearance) const;
 
  private:

@@ -33,9 +33,9 @@ void PrintTo(const Scene& scene, std::ostream* out) { *out << scene.name; }
 
 class RandomSceneVerification : public testing::TestWithParam<Scene> {};
 
-// The bar of the certificate, 20,000 legs over the four scenes: never accept what the independent
-// oracle refuses, refuse at most one in a thousand of what it accepts. The oracle knows surfaces
-// only, so the scenes are taken as shells here; solids have their own test.
+// Requirement for 20,000 legs in the four scenes: never accept a leg that the independent oracle
+// rejects, and reject at most 0.1% of the legs that it accepts. The oracle only knows surfaces. The
+// scenes are therefore shells here; solids have their own test.
 TEST_P(RandomSceneVerification, MatchesCgalOracle) {
   std::mt19937_64 random(7);
   const Scene& scene = GetParam();
@@ -61,7 +61,7 @@ TEST_P(RandomSceneVerification, MatchesCgalOracle) {
       rejected_by_skycap += verification.is_verified ? 0 : 1;
     }
   }
-  EXPECT_GT(violations, 100);  // the scene is worth testing on
+  EXPECT_GT(violations, 100);  // the scene contains enough violations for the test
   EXPECT_GT(accepted_by_oracle, 100);
   EXPECT_LE(rejected_by_skycap, accepted_by_oracle / 1000);
 }
@@ -74,8 +74,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Scene{"city", [](auto&) { return scenes::city(2); }, 2.0}),
     [](const auto& parameter) { return std::string(parameter.param.name); });
 
-// The nearest place named is real: it is on the leg, that far from the mesh by CGAL, and no sample
-// of the leg is nearer.
+// The reported closest point is on the leg and has that distance from the mesh according to CGAL.
+// No sampled point of the leg is closer.
 TEST(Clearance, ReturnsTheClosestPointOfTheLeg) {
   std::mt19937_64 random(8);
   Obstacles obstacles = solid(scenes::wires(random, 40));
@@ -121,15 +121,16 @@ TEST(Clearance, RejectsLegInsideSolidForBothOrientations) {
 TEST(Clearance, TreatsSelfIntersectingAndDuplicateMeshesAsSolid) {
   geometry::Mesh mesh = scenes::box({0, 0, 0}, {10, 10, 10});
   geometry::append(mesh, scenes::box({5, 5, 5}, {15, 15, 15}));
-  geometry::append(mesh, scenes::box({0, 0, 0}, {10, 10, 10}));  // the first one again
+  geometry::append(mesh, scenes::box({0, 0, 0}, {10, 10, 10}));  // the first box again
   const KnownSpace space(solid(mesh));
-  EXPECT_NEAR(space.winding_number({7, 7, 7}), 3.0, 0.05);  // the far field's dipoles are inexact
+  // The dipole approximation of the far field is inexact.
+  EXPECT_NEAR(space.winding_number({7, 7, 7}), 3.0, 0.05);
   EXPECT_NEAR(space.winding_number({12, 12, 12}), 1.0, 0.05);
   EXPECT_NEAR(space.winding_number({2, 12, 2}), 0.0, 0.05);
   EXPECT_FALSE(space.is_free({{7, 7, 7}, {7.1, 7, 7}}, 0.1));
 }
 
-// Over a hollow sheet more than half of the view is surface; facing it is still not being inside.
+// In a concave sheet more than half of the view is surface, but a point above it is not inside.
 TEST(Clearance, TreatsHollowOfOpenTerrainAsFree) {
   geometry::Mesh valley;
   valley.vertices = {{-10, -50, 20}, {0, -50, 0}, {10, -50, 20},
@@ -147,12 +148,12 @@ TEST(Clearance, TreatsPointsAsBalls) {
   const Closest closest = space.closest({{-5, 3, 0}, {15, 2, 0}}, 100);
   EXPECT_EQ(closest.kind, ObstacleKind::point);
   EXPECT_EQ(closest.index, 1U);
-  // Distance of (10, 0) from the line through (-5, 3) and (15, 2), less the radius.
+  // Distance of (10, 0) from the line through (-5, 3) and (15, 2), minus the radius.
   EXPECT_NEAR(closest.distance, 2.25 * 20.0 / std::sqrt(401.0) - 0.5, 1e-6);
   EXPECT_EQ(space.closest({{0, 0.2, 0}, {0, 0.3, 0}}, 100).distance, 0.0);
 }
 
-// The complaint that autopilots share: waypoints outside a no-fly zone, the leg between through it.
+// A known problem of autopilots: both waypoints are outside a no-fly zone, but the leg crosses it.
 TEST(Clearance, RejectsLegThroughNoFlyVolumeWithEndsOutside) {
   Obstacles obstacles;
   obstacles.no_fly = {{"heliport", {{10, -5}, {20, -5}, {20, 5}, {10, 5}}, 0.0, 50.0}};
@@ -160,9 +161,10 @@ TEST(Clearance, RejectsLegThroughNoFlyVolumeWithEndsOutside) {
   const LegVerification through = verify(space, {{0, 0, 20}, {30, 0, 20}}, 2.0);
   EXPECT_FALSE(through.is_verified);
   EXPECT_THAT(space.name(through.closest), HasSubstr("heliport"));
-  EXPECT_TRUE(verify(space, {{0, 0, 53}, {30, 0, 53}}, 2.0).is_verified);  // over its ceiling
+  // Above the zone's ceiling.
+  EXPECT_TRUE(verify(space, {{0, 0, 53}, {30, 0, 53}}, 2.0).is_verified);
   EXPECT_NEAR(verify(space, {{0, 0, 53}, {30, 0, 53}}, 2.0).clearance, 3.0, 2e-6);
-  EXPECT_FALSE(verify(space, {{14, 0, 20}, {16, 0, 20}}, 1.0).is_verified);  // wholly inside
+  EXPECT_FALSE(verify(space, {{14, 0, 20}, {16, 0, 20}}, 1.0).is_verified);  // completely inside
 }
 
 TEST(Clearance, RejectsFlightOverUnboundedNoFlyVolume) {
@@ -174,12 +176,12 @@ TEST(Clearance, RejectsFlightOverUnboundedNoFlyVolume) {
 }
 
 TEST(Clearance, RejectsLegThatLeavesFenceBetweenWaypoints) {
-  Obstacles obstacles;  // an L: the straight line between its arms leaves it
+  Obstacles obstacles;  // L shape: the straight line between its arms leaves the fence
   obstacles.fence = Prism{"site", {{0, 0}, {40, 0}, {40, 10}, {10, 10}, {10, 40}, {0, 40}}, 0, 30};
   const KnownSpace space(obstacles);
   EXPECT_TRUE(space.is_free({{5, 5, 10}, {35, 5, 10}}, 2.0));
   EXPECT_FALSE(space.is_free({{35, 5, 10}, {5, 35, 10}}, 0.0));
-  EXPECT_FALSE(space.is_free({{50, 50, 10}, {60, 50, 10}}, 1.0));  // wholly outside
+  EXPECT_FALSE(space.is_free({{50, 50, 10}, {60, 50, 10}}, 1.0));  // completely outside
   EXPECT_NEAR(space.closest({{5, 5, 28}, {5, 6, 28}}, 9).distance, 2.0, 1e-9);
 }
 

@@ -29,7 +29,7 @@ using testing::HasSubstr;
 
 const Camera small_camera({.width = 96, .height = 64, .horizontal_fov = 1.5, .vertical_fov = 1.1});
 
-/// A room 20 x 20 x 10 m, seen from inside, with a column.
+/// Returns a room of 20 x 20 x 10 m with a column, observed from inside.
 geometry::Mesh room() {
   geometry::Mesh mesh = scenes::box({-10, -10, 0}, {10, 10, 10});
   geometry::append(mesh, scenes::box({2, 2, 0}, {4, 4, 10}));
@@ -43,7 +43,8 @@ KnownSpace make_truth(const geometry::Mesh& mesh) {
   return KnownSpace(obstacles);
 }
 
-/// The property that everything rests on: whatever counts as free keeps the true distance.
+/// Checks the safety property: space that is classified as free keeps the clearance from the ground
+/// truth.
 void expect_truly_free(const FreeSpace& measured, const FreeSpace& truth, const AlignedBox3d& where,
                        double clearance, int min) {
   std::mt19937_64 random(11);
@@ -56,7 +57,7 @@ void expect_truly_free(const FreeSpace& measured, const FreeSpace& truth, const 
     EXPECT_TRUE(verify(truth, leg, clearance).is_verified)
         << leg.from.transpose() << " to " << leg.to.transpose();
   }
-  EXPECT_GT(free, min);  // it does prove something
+  EXPECT_GT(free, min);  // the check covers enough free space
 }
 
 TEST(MeasuredSpace, IsUnknownBeforeFirstScan) {
@@ -79,7 +80,7 @@ TEST(MeasuredSpace, ComputesExactDistancesToDeclaredBoxFaces) {
   EXPECT_FALSE(space.is_free({{0, 0, 0}, {20, 0, 0}}, 0.1));
 }
 
-// The ball's volume, less at most the voxels that its surface cuts.
+// Volume of the ball, minus at most the voxels that its surface intersects.
 TEST(MeasuredSpace, FillsDeclaredBallFromInside) {
   MeasuredSpace space({.voxel = 0.1});
   space.declare_free(Vector3d(0.03, 0.02, 0.01), 2.0);
@@ -125,12 +126,13 @@ TEST(MeasuredSpace, KeepsFreeSpaceClearOfGroundTruthForSweeps) {
   space.insert(scan_around(scene, {-5, -5, 5}, spacing * 0.99), spacing);
   const KnownSpace truth = make_truth(scene);
   expect_truly_free(space, truth, AlignedBox3d(Vector3d(-9, -9, 1), Vector3d(9, 9, 9)), 0.5, 30);
-  // Behind the column, as seen from the sensor, nothing is known; beside it there is.
+  // The space behind the column is unknown. The space next to it is free.
   EXPECT_FALSE(space.is_free({{8, 8, 5}, {8, 8, 5}}, 0.1));
   EXPECT_TRUE(space.is_free({{-8, 8, 5}, {-7, 8, 5}}, 0.5));
 }
 
-// Rays of a turn in flight begin beside the place that the turn is taken to be from.
+// During a revolution in flight, rays start up to `spread` from the position that is assigned to
+// the scan.
 TEST(MeasuredSpace, KeepsFreeSpaceClearOfGroundTruthForSpreadRayOrigins) {
   const geometry::Mesh scene = room();
   constexpr double spacing = 0.02, spread = 0.6;
@@ -147,8 +149,7 @@ TEST(MeasuredSpace, KeepsFreeSpaceClearOfGroundTruthForSpreadRayOrigins) {
   EXPECT_LT(spread_out.free_volume(), exact.free_volume());
 }
 
-// Which way the axis of the turn lies makes no difference to a sensor whose rays are as dense all
-// around.
+// The axis of the revolution has no effect if the rays have the same density in all directions.
 TEST(MeasuredSpace, KeepsFreeSpaceClearOfGroundTruthForAnySweepAxis) {
   const geometry::Mesh scene = room();
   for (const Vector3d& axis : {Vector3d(1, 0, 0), Vector3d(0, 0, 1), Vector3d(1, 2, -2)}) {
@@ -160,11 +161,11 @@ TEST(MeasuredSpace, KeepsFreeSpaceClearOfGroundTruthForAnySweepAxis) {
   }
 }
 
-// A ball before the middle of a wall that is hit all over is free; the same ball is not with a cell
-// in its middle, or next to its rim, that no ray hit, though all rays are far behind it.
+// A ball in front of a wall is free if rays hit the wall everywhere. It is unknown if a cell in its
+// centre or next to its rim contains no ray, although all rays end far behind it.
 TEST(MeasuredSpace, TreatsScatteredRayCellsNextToGapsAsUnknown) {
   const auto space_with_hole = [](double hole_at) {
-    geometry::Scan scan;  // along z
+    geometry::Scan scan;  // rays around the z axis
     for (int i = -100; i < 100; ++i) {
       for (int j = -100; j < 100; ++j) {
         const double x = 0.05 * i, y = 0.05 * j;
@@ -179,12 +180,12 @@ TEST(MeasuredSpace, TreatsScatteredRayCellsNextToGapsAsUnknown) {
   EXPECT_TRUE(space_with_hole(3.0).is_free(ahead, 0.3));
   EXPECT_FALSE(space_with_hole(0.0).is_free(ahead, 0.3));
   EXPECT_FALSE(space_with_hole(1.0).is_free(ahead, 0.3));
-  // Where the rays end, so does what is known, two cells or more inside of them.
+  // At the border of the ray pattern, known space ends at least two cells inside.
   EXPECT_FALSE(space_with_hole(3.0).is_free({{-2.4, 0, 5}, {-2.4, 0, 5}}, 0.05));
 }
 
 TEST(MeasuredSpace, TreatsNoReturnPixelsAsFreeOnlyWhenConfigured) {
-  const geometry::Mesh wall = scenes::box({10, -2, -2}, {11, 2, 2});  // in half of the image
+  const geometry::Mesh wall = scenes::box({10, -2, -2}, {11, 2, 2});  // covers half of the image
   const geometry::Scan scan = depth_image(wall, small_camera, look_at({0, 0, 0}, {10, 0, 0}));
   const Segment beside_the_wall{{11, 5, 0}, {12, 5, 0}}, before_it{{7.5, 0, 0}, {8.5, 0, 0}};
   MeasuredSpace wary, trusting({.free_without_return = 20.0});
@@ -194,7 +195,7 @@ TEST(MeasuredSpace, TreatsNoReturnPixelsAsFreeOnlyWhenConfigured) {
   EXPECT_FALSE(wary.is_free(beside_the_wall, 0.5));
   EXPECT_TRUE(trusting.is_free(beside_the_wall, 0.5));
   EXPECT_FALSE(trusting.is_free({{12, 0, 0}, {13, 0, 0}}, 0.1));  // behind the wall
-  EXPECT_FALSE(trusting.is_free({{25, 5, 0}, {26, 5, 0}}, 0.1));  // beyond what is trusted
+  EXPECT_FALSE(trusting.is_free({{25, 5, 0}, {26, 5, 0}}, 0.1));  // beyond the trusted range
   EXPECT_FALSE(trusting.is_free({{-2, 0, 0}, {-1, 0, 0}}, 0.1));  // behind the camera
 }
 
@@ -204,17 +205,17 @@ TEST(MeasuredSpace, KeepsMeasuredPointsOccupiedAfterLaterScans) {
   space.insert(depth_image(wall, small_camera, look_at({0, 0, 0}, {10, 0, 0})), small_camera);
   geometry::Scan empty;
   empty.world_from_sensor = geometry::camera_pose(look_at({0, 0, 0}, {10, 0, 0}));
-  space.insert(empty, small_camera);  // as if the wall had gone
+  space.insert(empty, small_camera);  // a scan without the wall
   const Closest closest = space.closest({{9, 0, 0}, {9, 1, 0}}, 5);
   EXPECT_EQ(closest.kind, ObstacleKind::occupied_space);
-  EXPECT_NEAR(closest.distance, 1.0, 0.25);  // to the voxel that holds the wall's points
+  EXPECT_NEAR(closest.distance, 1.0, 0.25);  // distance to the voxel with the points of the wall
 }
 
-// Nothing peeked: the far side of the building bulges out, which nobody has seen. A path found in
-// what was seen never touches the truth, though the straight way round the near side's shape would.
+// The far side of the building has an unobserved extension. A path in the observed space never
+// touches the ground truth, although a straight path around the visible side would.
 TEST(MeasuredSpace, KeepsPathsClearOfUnobservedSideOfBuilding) {
   geometry::Mesh building = scenes::box({-5, -5, 0}, {5, 5, 10});
-  geometry::append(building, scenes::box({-9, 5, 0}, {9, 16, 10}));  // the surprise
+  geometry::append(building, scenes::box({-9, 5, 0}, {9, 16, 10}));  // unobserved extension
   geometry::append(building, scenes::box({-60, -60, -1}, {60, 60, 0}));
   const KnownSpace truth = make_truth(building);
   MeasuredSpace space({.voxel = 0.3, .free_without_return = 25.0});
@@ -225,7 +226,7 @@ TEST(MeasuredSpace, KeepsPathsClearOfUnobservedSideOfBuilding) {
   int reached = 0;
   std::mt19937_64 random(2);
   for (int step = 0; step < 16; ++step) {
-    // Look ahead, around a ring about the building, then try to go to a random place.
+    // Measure from a ring around the building, then try to reach random positions.
     for (const double turn : {-1.2, 0.0, 1.2}) {
       const double bearing = std::atan2(-position.y(), -position.x()) + turn;
       const Vector3d target = position + Vector3d(std::cos(bearing), std::sin(bearing), 0);
@@ -250,7 +251,7 @@ MeasuredSpace space_with_region() {
                        .free_without_return = 0.0,
                        .region = AlignedBox3d(Vector3d(-6.1, -6, -1), Vector3d(6, 6, 11))});
   geometry::Mesh building = scenes::box({-5, -5, 0}, {5, 5, 10});
-  geometry::append(building, scenes::box({-1, -21, 0}, {1, -20, 10}));  // outside of the region
+  geometry::append(building, scenes::box({-1, -21, 0}, {1, -20, 10}));  // outside the region
   for (const Vector3d& position : {Vector3d(-15, -9, 5), Vector3d(12, -12, 6)}) {
     space.insert(depth_image(building, small_camera, look_at(position, Vector3d(0, -8, 5))),
                  small_camera);
@@ -260,14 +261,14 @@ MeasuredSpace space_with_region() {
 
 TEST(MeasuredSpace, TreatsSpaceOutsideRegionAsFreeExceptMeasuredPoints) {
   const MeasuredSpace space = space_with_region();
-  // Around the region, on the side that nobody has seen.
+  // Around the region, on its unobserved side.
   EXPECT_TRUE(space.is_free({{-20, 20, 5}, {20, 20, 5}}, 10.0));
   const Closest unobserved = space.closest({{-20, 10, 5}, {20, 10, 5}}, 9.0);
   EXPECT_EQ(unobserved.kind, ObstacleKind::unknown_space);
   EXPECT_NEAR(unobserved.distance, 4.0,
-              1e-9);  // to the region's face at y = 6, a whole voxel's edge
+              1e-9);  // to the region's face at y = 6, which is a voxel boundary
   const Closest grown = space.closest({{-10, 3, 5}, {-10, 4, 5}}, 9.0);
-  EXPECT_NEAR(grown.distance, 10 - 6.25, 1e-9);  // x = -6.1 grows to the next voxel's edge
+  EXPECT_NEAR(grown.distance, 10 - 6.25, 1e-9);  // x = -6.1 is extended to the next voxel boundary
   const Closest pillar = space.closest({{-3, -19, 5}, {3, -19, 5}}, 3.0);
   EXPECT_EQ(pillar.kind, ObstacleKind::occupied_space);
   EXPECT_NEAR(pillar.distance, 1.0, 0.25);
@@ -293,7 +294,7 @@ std::vector<Eigen::Vector3f> collect_boundary(const MeasuredSpace& space) {
   return free_boundary(file, "file");
 }
 
-/// How often each face of a box of whole voxels was found, by its middle, in half voxels.
+/// Returns how often each face of a voxel box was found, by the centre of the face in half voxels.
 std::map<std::array<int, 3>, int> counted(const std::vector<Eigen::Vector3f>& faces, double voxel) {
   std::map<std::array<int, 3>, int> counts;
   for (const Eigen::Vector3f& face : faces) {
@@ -303,8 +304,8 @@ std::map<std::array<int, 3>, int> counted(const std::vector<Eigen::Vector3f>& fa
   return counts;
 }
 
-// A box of 9 x 10 x 17 voxels has 2 (90 + 153 + 170) faces, each once, across blocks and below
-// zero; a voxel that is measured inside adds its six.
+// A box of 9 x 10 x 17 voxels has 2 (90 + 153 + 170) faces. Each is found once, across blocks and
+// negative coordinates. A measured voxel inside adds its six faces.
 TEST(MeasuredSpace, CollectsEachBoundaryFaceOnce) {
   MeasuredSpace space({.voxel = 0.5});
   EXPECT_TRUE(collect_boundary(space).empty());
@@ -323,7 +324,7 @@ TEST(MeasuredSpace, CollectsEachBoundaryFaceOnce) {
   EXPECT_EQ(counted(collect_boundary(space), 0.5).size(), 832U);
 }
 
-// Beside the region everything is free, so nothing ends there.
+// Space outside the region is free, so the faces of the region are not boundaries.
 TEST(MeasuredSpace, CollectsNoBoundaryFacesAtRegionFaces) {
   MeasuredSpace space({.voxel = 0.5, .region = AlignedBox3d(Vector3d(0, 0, 0), Vector3d(4, 4, 4))});
   space.declare_free(AlignedBox3d(Vector3d(0, 0, 0), Vector3d(2, 4, 4)));
@@ -366,14 +367,14 @@ TEST(MeasuredSpace, RejectsDamagedFilesWithFileName) {
   }
 }
 
-/// Of blocks as wide as the Earth.
+/// Blocks as large as the Earth.
 TEST(MeasuredSpace, RejectsFilesWithBlocksOutOfRange) {
   std::stringstream file;
   space_with_region().write(file);
   for (const double voxel : {1e3, 1e30, 1e300}) {
     std::string hostile = file.str();
     std::memcpy(&hostile[16], &voxel, sizeof voxel);
-    hostile.replace(112, 8, 8, '\0');  // the first block: as far off as a key can say
+    hostile.replace(112, 8, 8, '\0');  // the first block key gets its maximum value
     std::istringstream stream(hostile);
     EXPECT_THAT(testing_support::thrown_message([&] { MeasuredSpace::read(stream, "free.bin"); }),
                 testing::StartsWith("free.bin: "))
@@ -389,7 +390,7 @@ TEST(MeasuredSpace, RejectsInvalidScansAndConfigurations) {
               testing::HasSubstr("1 points but 0 pixels"));  // no pixels
   scan.pixels = {96 * 64};
   EXPECT_THAT(testing_support::thrown_message([&] { space.insert(scan, small_camera); }),
-              testing::HasSubstr("a scan has pixel 6144"));  // one too far
+              testing::HasSubstr("a scan has pixel 6144"));  // one too large
   EXPECT_THAT(testing_support::thrown_message([&] { space.insert(scan, 0.0); }),
               testing::HasSubstr("the ray spacing is 0.0"));
   EXPECT_THAT(testing_support::thrown_message([&] { MeasuredSpace({.voxel = 0.0}); }),

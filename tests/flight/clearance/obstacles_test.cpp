@@ -54,7 +54,7 @@ TEST(Obstacles, ReportTheInvalidPart) {
   EXPECT_THAT(error_message(no_triangles), HasSubstr("no triangle"));
 }
 
-// Both ways of asking agree: parity in the plane, and the winding number of the closed surface.
+// Compares the point-in-polygon test in the plane with the winding number of the closed surface.
 TEST(Prism, ContainsPointsWithPositiveWindingNumber) {
   std::mt19937_64 random(4);
   for (const bool clockwise : {false, true}) {

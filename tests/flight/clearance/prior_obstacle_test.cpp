@@ -43,7 +43,7 @@ TEST(PriorObstacle, IsOccupiedInside) {
   EXPECT_EQ(obstacle.distance({10.05, 5, 4}, 100), 0.0) << "within what it may be off";
 }
 
-// A cloud's points are balls; a point stands for a surface up to a cube's diagonal away.
+// Cloud points are balls. A point represents surface up to the diagonal of its cube away.
 TEST(PriorObstacle, EnlargesPointsByRadiusAndUncertainty) {
   PriorObstacleConfig config{.name = "the prior scan.las", .uncertainty = 0.3};
   config.points = {{0, 0, 5}, {1, 0, 5}};
@@ -53,7 +53,7 @@ TEST(PriorObstacle, EnlargesPointsByRadiusAndUncertainty) {
   EXPECT_EQ(obstacle.name(obstacle.closest({{0, 0, 7}, {0, 0, 7}}, 10)), config.name);
 }
 
-// What a height model does not show, under a roof or a crown, is in the way as what it shows.
+// Space below a height model, under a roof or a crown, is occupied as well.
 TEST(PriorObstacle, ExtendsColumnsDownwardWithoutLimit) {
   PriorObstacleConfig config{.name = "the prior dsm.tif", .uncertainty = 1.0};
   config.columns = {{Vector3d(0, 0, 4), Vector3d(1, 1, 5)}};
@@ -93,7 +93,7 @@ TEST(PriorObstacle, RejectsInvalidConfigurations) {
   EXPECT_THAT(error_message(config), HasSubstr("x has a column that is empty or not finite"));
 }
 
-// Beside all else that is known: the nearest counts, and is called by its own name.
+// The closest obstacle counts and is reported by its own name.
 TEST(KnownSpace, IncludesPriorObstacles) {
   Obstacles site;
   site.ground_height = 0.0;
@@ -115,7 +115,7 @@ TEST(KnownSpace, IncludesPriorObstacles) {
   EXPECT_TRUE(space.extent().contains(Vector3d(30, 5, 4)));
 }
 
-/// Random boxes, as surfaces and as columns, and the same as one mesh for the judge; and balls.
+/// Random boxes as surfaces and as columns, the same boxes as one mesh for the oracle, and balls.
 struct RandomTown {
   PriorObstacleConfig config{.name = "town"};
   std::vector<AlignedBox3d> boxes;
@@ -143,8 +143,7 @@ struct RandomTown {
       config.points.push_back(scenes::point_in(random, site).cast<float>());
     }
   }
-  /// From a leg to the surface of the nearest ball: the distance of a point from a line, by its
-  /// height over the leg, or from an end.
+  /// Returns the distance between a leg and the surface of the closest ball.
   double nearest_ball(const Segment& leg) const {
     double min = 1e9;
     const Vector3d along = (leg.to - leg.from).normalized();
@@ -160,8 +159,8 @@ struct RandomTown {
   }
 };
 
-// 10^5 legs against an independent judge: no leg is certified that exact geometry refuses, and
-// hardly any is refused that it certifies.
+// 10^5 legs are compared with an independent oracle. No leg is verified that exact geometry
+// rejects, and very few are rejected that it accepts.
 TEST(PriorObstacle, VerifiesOnlyLegsThatCgalAccepts) {
   std::mt19937_64 random(19);
   std::uniform_real_distribution<double> clearances(0.0, 4.0);

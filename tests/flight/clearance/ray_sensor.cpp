@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The first triangle along a ray (Moeller & Trumbore 1997).
+/// Returns the distance to the first triangle along a ray (Moeller & Trumbore 1997).
 std::optional<double> first_hit(const geometry::Mesh& mesh, const Vector3d& origin,
                                 const Vector3d& direction) {
   double nearest = std::numeric_limits<double>::infinity();

@@ -1,5 +1,5 @@
-/// A depth camera and a LiDAR over a few triangles, by brute force: truth for tests of what may be
-/// concluded from measurements.
+/// Brute-force depth camera and LiDAR for small meshes: ground truth for tests of conclusions from
+/// measurements.
 #pragma once
 
 #include "geometry/points/scan.h"
@@ -9,11 +9,11 @@
 
 namespace skycap::flight {
 
-/// One noise-free ray through every pixel.
+/// Casts one noise-free ray through each pixel.
 geometry::Scan depth_image(const geometry::Mesh& scene, const geometry::Camera& camera,
                            const geometry::View& view);
 
-/// One noise-free ray every `spacing` [rad] of azimuth and elevation, all around.
+/// Casts noise-free rays in all directions, one for each `spacing` [rad] of azimuth and elevation.
 geometry::Scan scan_around(const geometry::Mesh& scene, const Eigen::Vector3d& position,
                            double spacing);
 

@@ -15,8 +15,9 @@ using Eigen::Vector3d;
 
 const Eigen::AlignedBox3d around(Vector3d::Constant(-5), Vector3d::Constant(5));
 
-/// Brute-force twin: the distance from a point to a convex set is convex, so along a segment it has
-/// one valley, which interval thirds close in on to the square root of rounding.
+/// Computes the minimum distance along a segment by ternary search. The distance of a point from a
+/// convex set is convex, so it has one minimum along a segment. The accuracy is the square root of
+/// machine precision.
 double valley(const Segment& segment, const std::function<double(const Vector3d&)>& distance) {
   double low = 0.0, high = 1.0;
   for (int i = 0; i < 100; ++i) {
@@ -27,8 +28,8 @@ double valley(const Segment& segment, const std::function<double(const Vector3d&
   return distance(segment.at(0.5 * (low + high)));
 }
 
-/// Distance from a point to a triangle, again by thirds: over the rows that are parallel to one
-/// side.
+/// Computes the distance of a point from a triangle, by ternary search over the rows parallel to
+/// one side.
 double to_triangle(const Vector3d& point, const Triangle& triangle) {
   const Vector3d &a = triangle[0], &b = triangle[1], &c = triangle[2];
   const auto row = [&](const Vector3d& on_ab) {
@@ -47,7 +48,7 @@ TEST(SegmentDistance, MatchesNestedSearchForTriangles) {
     const NearestPoints pair = nearest(segment, triangle);
     const double searched =
         valley(segment, [&](const Vector3d& p) { return to_triangle(p, triangle); });
-    // Searching by thirds stops where differences vanish: 1e-7 of a 10 m scene.
+    // The ternary search ends where differences vanish: 1e-7 of a 10 m scene.
     EXPECT_NEAR(std::sqrt(pair.squared_distance), searched, 1e-6) << "case " << i;
   }
 }
@@ -91,7 +92,7 @@ TEST(SegmentDistance, MatchesSearchForBoxes) {
   }
 }
 
-// Analytic: parallel, crossing, collinear, and points instead of segments.
+// Closed forms: parallel, crossing and collinear segments, and points.
 TEST(SegmentDistance, IsExactForSpecialSegmentPairs) {
   const Segment x_axis{{0, 0, 0}, {10, 0, 0}};
   const auto distance = [&](const Vector3d& from, const Vector3d& to) {
@@ -104,7 +105,8 @@ TEST(SegmentDistance, IsExactForSpecialSegmentPairs) {
   EXPECT_DOUBLE_EQ(distance({4, 0, 0}, {4, 7, 0}), 0.0);    // touching
 }
 
-// 300 m long edges at angles down to 1e-12: the error must stay below the clearance guard, 1e-6 m.
+// Edges of 300 m at angles down to 1e-12: the error must be smaller than the clearance guard of
+// 1e-6 m.
 TEST(SegmentDistance, KeepsPrecisionForNearlyParallelSegments) {
   for (double angle = 1e-3; angle > 1e-12; angle /= 10.0) {
     const Segment along{{0, 0, 0}, {300, 0, 0}};

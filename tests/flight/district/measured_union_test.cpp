@@ -23,7 +23,7 @@ using testing_support::thrown_message;
 
 constexpr double voxel = 0.5;
 
-/// Boxes on whole voxels, so that a box and the voxels in it are the same.
+/// Boxes aligned with voxels, so that a box contains whole voxels only.
 const AlignedBox3d west(Vector3d(-10, -6, 0), Vector3d(2, 6, 8));
 const AlignedBox3d east(Vector3d(-2, -6, 0), Vector3d(10, 6, 8));
 
@@ -44,7 +44,7 @@ std::vector<MeasuredSpace> both(MeasuredSpace a, MeasuredSpace b) {
   return spaces;
 }
 
-/// Boxes of whole voxels in a region.
+/// Returns random boxes of whole voxels in a region.
 std::vector<AlignedBox3d> measured_in(const AlignedBox3d& region, std::mt19937_64& random) {
   std::vector<AlignedBox3d> boxes;
   for (int i = 0; i < 12; ++i) {
@@ -56,8 +56,8 @@ std::vector<AlignedBox3d> measured_in(const AlignedBox3d& region, std::mt19937_6
   return boxes;
 }
 
-/// The rule by itself: a space that is unknown in the hull of both regions, and in which all that
-/// is in neither, and all that one of them has measured, is free.
+/// The rule of the union: unknown space is limited to the hull of both regions. Within it, space
+/// outside both regions and space that either survey has measured is free.
 TEST(MeasuredUnion, MatchesOneSurveyOfAllRegions) {
   std::mt19937_64 random(3);
   for (int round = 0; round < 20; ++round) {
@@ -84,7 +84,7 @@ TEST(MeasuredUnion, MatchesOneSurveyOfAllRegions) {
   }
 }
 
-// What one survey has seen free is in the way all the same where another one has met something.
+// Space that one survey observed as free is occupied if another survey measured a point there.
 TEST(MeasuredUnion, IsOccupiedWhereAnySurveyMeasuredAPoint) {
   MeasuredSpace a = make_space(west), b = make_space(east);
   a.declare_free(west);
@@ -97,7 +97,8 @@ TEST(MeasuredUnion, IsOccupiedWhereAnySurveyMeasuredAPoint) {
   EXPECT_EQ(together.name(closest), "a measured point");
 }
 
-/// A wall in the east, as a survey of the west sees it over its own box.
+/// Returns the space of a survey in the west that also observed a wall in the east, beyond its own
+/// box.
 MeasuredSpace seen_from_the_west(const std::vector<AlignedBox3d>& extra_boxes) {
   MeasuredSpace space({.voxel = voxel, .region = west, .extra_boxes = extra_boxes});
   const geometry::Camera camera(
@@ -107,14 +108,14 @@ MeasuredSpace seen_from_the_west(const std::vector<AlignedBox3d>& extra_boxes) {
   return space;
 }
 
-/// As a package hands it on.
+/// Writes and reads a space as a package does.
 MeasuredSpace read_again(const MeasuredSpace& space) {
   std::stringstream file;
   space.write(file);
   return MeasuredSpace::read(file, "free.bin");
 }
 
-// What a survey has seen free beyond its own box is free in the boxes of others, too.
+// Free space that a survey observed outside its own box is free in the boxes of other surveys, too.
 TEST(MeasuredUnion, IncludesFreeSpaceObservedOutsideOwnRegion) {
   const Segment beyond{{3.5, 0, 4}, {7, 0, 4}};
   const MeasuredSpace alone = seen_from_the_west({}), kept = seen_from_the_west({east});
@@ -126,12 +127,12 @@ TEST(MeasuredUnion, IncludesFreeSpaceObservedOutsideOwnRegion) {
   const MeasuredUnion with(both(read_again(kept), make_space(east)));
   EXPECT_TRUE(with.is_free(beyond, 1.0));
   EXPECT_FALSE(with.is_free({{7, 0, 4}, {9, 0, 4}}, 0.1));                      // the wall
-  EXPECT_FALSE(with.is_free({{-1.75, 5.75, 7.75}, {-1.75, 5.75, 7.75}}, 0.1));  // out of sight
-  EXPECT_TRUE(with.is_free({{-4, 0, 4}, {7, 0, 4}}, 0.5));  // from one box into the other
+  EXPECT_FALSE(with.is_free({{-1.75, 5.75, 7.75}, {-1.75, 5.75, 7.75}}, 0.1));  // not visible
+  EXPECT_TRUE(with.is_free({{-4, 0, 4}, {7, 0, 4}}, 0.5));                      // between the boxes
 }
 
-// For the survey itself a box beside it is as closed as its own; what is free is what would be if
-// both were one, wherever neither leaves a gap to the hull.
+// In one survey, an extra box is as closed as its own region. Free space equals that of a merged
+// region wherever neither region leaves a gap to the hull.
 TEST(MeasuredUnion, MatchesMeasuredSpaceOfMergedRegions) {
   const MeasuredSpace extra_boxes = seen_from_the_west({east});
   MeasuredSpace one({.voxel = voxel, .region = west.merged(east)});
@@ -149,14 +150,15 @@ TEST(MeasuredUnion, MatchesMeasuredSpaceOfMergedRegions) {
   }
 }
 
-// Nobody has been there: the box of a target that was not surveyed is closed.
+// The box of an unsurveyed target is closed.
 TEST(MeasuredUnion, IsUnknownInUnsurveyedRegions) {
   MeasuredSpace a = make_space(west);
   a.declare_free(west);
   const MeasuredUnion together(both(std::move(a), make_space(east)));
   EXPECT_TRUE(together.is_free({{-8, 0, 4}, {-5, 0, 4}}, 1.0));
   EXPECT_FALSE(together.is_free({{-8, 0, 4}, {5, 0, 4}}, 1.0));
-  EXPECT_TRUE(together.is_free({{-8, 0, 10}, {8, 0, 10}}, 1.0));  // vouched for, over both
+  // Assumed free, above both regions.
+  EXPECT_TRUE(together.is_free({{-8, 0, 10}, {8, 0, 10}}, 1.0));
   EXPECT_EQ(together.closest({{6, 0, 4}, {6, 0, 4}}, 1.0).kind, ObstacleKind::unknown_space);
 }
 

@@ -22,7 +22,7 @@ struct CapturePoints {
   std::vector<CapturePoint> capture_points;
   std::vector<std::uint32_t> targets;
 
-  /// So many around a target.
+  /// Adds `count` capture points around a target.
   void add(const Vector3d& middle, int count, std::uint32_t target, std::mt19937_64& random) {
     const Eigen::AlignedBox3d around(middle - Vector3d(15, 15, 5), middle + Vector3d(15, 15, 5));
     for (int i = 0; i < count; ++i) {
@@ -79,7 +79,7 @@ TEST(PadSorties, ListCapturePointsOutOfBatteryRangeAsUnreachable) {
   EXPECT_THAT(sorties.pads, Each(0U));
 }
 
-// Neighbouring targets are ordered together, a thousand stations at a time.
+// Capture points of neighbouring targets are ordered together, up to a thousand at a time.
 TEST(PadSorties, OrderThousandCapturePointsNearTheExpectedTourLength) {
   std::mt19937_64 random(3);
   CapturePoints given;
@@ -91,8 +91,9 @@ TEST(PadSorties, OrderThousandCapturePointsNearTheExpectedTourLength) {
   const PadSorties sorties =
       sorties_from_pads(given.capture_points, given.targets, pads, 5.0, motion());
   EXPECT_EQ(sorted(sorties.order), numbers_below(1200));
-  // A tour of many places that lie evenly in an area is 0.7124 sqrt(places x area) long; these lie
-  // evenly in depth, too, which makes it longer (Beardwood, Halton & Hammersley 1959).
+  // A tour through many evenly distributed points in an area has the length 0.7124 sqrt(points x
+  // area) (Beardwood, Halton & Hammersley 1959). These points are also distributed in height, which
+  // makes the tour longer.
   EXPECT_LT(sorties.length, 1.6 * 0.7124 * std::sqrt(1200.0 * 640.0 * 600.0));
 }
 

@@ -1,5 +1,5 @@
-// What all formats have in common: what is written is valid, reads back as the same flight, and is
-// proved again before it gets its name.
+// Common rules of all formats: files are valid, read back as the same flight, and are verified
+// again before they get their final name.
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -33,7 +33,7 @@ std::string read_content(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-/// A directory that goes with the test.
+/// Temporary directory that is removed at the end of the test.
 class Scratch {
  public:
   Scratch() : path_(std::filesystem::temp_directory_path() / "skycap_export_XXXXXX") {
@@ -52,7 +52,7 @@ const FormatInfo& find_info(Format format) { return formats()[static_cast<std::s
 
 class EveryFormat : public testing::TestWithParam<Format> {};
 
-// The points flown are the plan's: to half a unit of the last digit written and of 1e-7 degrees.
+// Positions equal those of the plan to half a unit of the last written digit and of 1e-7 degrees.
 TEST_P(EveryFormat, RoundTripsTheFlightPlan) {
   const Format format = GetParam();
   const FlightPlan plan = sample_plan(vehicle_for(format));
@@ -73,7 +73,7 @@ TEST_P(EveryFormat, RoundTripsTheFlightPlan) {
       nearest = std::min(nearest, (point - waypoint.position).norm());
     EXPECT_LT(nearest, rounding_bound);
   }
-  // And nowhere else: every point read lies on a leg of the plan.
+  // Each point that is read is on a leg of the plan.
   for (const Vector3d& point : executed_points) {
     double nearest_leg = 1e9;
     for (std::size_t i = 1; i < plan.waypoints.size(); ++i) {
@@ -94,7 +94,7 @@ TEST_P(EveryFormat, WritesFileOnlyAfterVerification) {
   EXPECT_GE(result.min_clearance, plan.clearance - rounding_bound);
   EXPECT_EQ(read_content(scratch / name), write(plan, format));
 
-  // A crane appears after planning: the file must not change.
+  // An obstacle is added after planning. The file must not change.
   Obstacles changed = sample_site();
   changed.cloud = {
       {(0.5 * (plan.waypoints[1].position + plan.waypoints[2].position)).cast<float>()}, 0.1};
@@ -120,8 +120,8 @@ INSTANTIATE_TEST_SUITE_P(Export, EveryFormat,
                            return name;
                          });
 
-// Curves in files are proved again between the places that they are written as.
-// Missions without a name key are called as their file, which may be called anything.
+// Curves in files are verified again between their written points. A mission without a name key has
+// the name of its file, which may contain any bytes.
 TEST(Export, AcceptsPlanNameThatIsNotUtf8) {
   for (const Format format : {Format::plan, Format::geojson}) {
     FlightPlan plan = sample_plan(vehicle_for(format));
@@ -185,7 +185,7 @@ TEST(Export, RejectsUnknownFormatsAndFiles) {
   EXPECT_EQ(detect_format("a.csv", "# frame: NED"), Format::csv);
 }
 
-// An independent reader of the XML formats, where it is installed.
+// xmllint, if installed, is an independent reader of the XML formats.
 TEST(Export, WritesXmlThatXmllintAccepts) {
   if (std::system("command -v xmllint > /dev/null 2>&1") != 0) GTEST_SKIP() << "no xmllint";
   const Scratch scratch;
@@ -200,7 +200,7 @@ TEST(Export, WritesXmlThatXmllintAccepts) {
 
 // ---- trajectories ----------------------------------------------------------------------------
 
-// Derivatives by differences agree with what is stated: the profile is the motion that it says.
+// Numerical derivatives equal the stated velocities and accelerations.
 class TrajectoryStyles : public testing::TestWithParam<FlightStyle> {};
 
 TEST_P(TrajectoryStyles, HaveVelocitiesAndAccelerationsThatMatchDerivatives) {
@@ -211,7 +211,8 @@ TEST_P(TrajectoryStyles, HaveVelocitiesAndAccelerationsThatMatchDerivatives) {
   for (std::size_t i = 1; i + 1 < states.size(); ++i) {
     const TimedState &before = states[i - 1], &now = states[i], &after = states[i + 1];
     const double span = after.time - before.time;
-    // Jerk is limited to 4 m/s^3: errors of the differences are below its product with the step.
+    // Jerk is limited to 4 m/s^3. The error of the differences is smaller than the jerk times the
+    // step.
     EXPECT_LT(((after.position - before.position) / span - now.velocity).norm(), 8e-3);
     EXPECT_LT(((after.velocity - before.velocity) / span - now.acceleration).norm(), 2e-2);
     EXPECT_LE(now.velocity.norm(), plan.conditions.cruise_speed + 1e-9);
@@ -225,8 +226,8 @@ INSTANTIATE_TEST_SUITE_P(Styles, TrajectoryStyles,
                          testing::Values(FlightStyle::stop, FlightStyle::blend, FlightStyle::smooth,
                                          FlightStyle::pass));
 
-// In passing as at stops: each view's picture is taken in its place, looking its way; the vehicle
-// moves meanwhile, no faster than asked.
+// Fly-through capture takes each view's image at the same position and in the same direction as
+// stop-and-capture. The vehicle moves meanwhile, within the speed limit.
 TEST(Trajectory, CapturesSameViewsInFlyThroughAsAtStops) {
   const auto captures = [](FlightStyle style) {
     std::vector<TimedState> captured;
@@ -301,7 +302,7 @@ TEST(Trajectory, RejectsInvalidFilesWithLineNumber) {
 
 // ---- geodesy ---------------------------------------------------------------------------------
 
-// Analytic: on the equator and at the pole the ellipsoid's radii are known in closed form.
+// At the equator and at the pole, the radii of the ellipsoid have closed forms.
 TEST(Geodesy, MatchesClosedFormsOnEquatorAndPole) {
   constexpr double a = 6378137.0, f = 1.0 / 298.257223563;
   const LocalFrame equator({0, 0, 0});

@@ -1,4 +1,4 @@
-// An independent reader of the map formats: GDAL's ogrinfo, where it is installed.
+// GDAL's ogrinfo, if installed, is an independent reader of the map formats.
 #include <array>
 #include <cstdio>
 #include <cstdlib>
@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Longitude, latitude, height of each place of the shapes of one kind, shape by shape.
+/// Longitude, latitude and height of each vertex, for each shape of one kind.
 using Shapes = std::vector<std::vector<Vector3d>>;
 
 class Gdal : public testing::Test {
@@ -24,7 +24,7 @@ class Gdal : public testing::Test {
     if (std::system("command -v ogrinfo > /dev/null 2>&1") != 0) GTEST_SKIP() << "no ogrinfo";
   }
 
-  /// All that ogrinfo has to say of a file with this content.
+  /// Returns the output of ogrinfo for a file with this content.
   std::string report(const std::string& name, const std::string& content) const {
     const std::filesystem::path path = folder_.file(name, content);
     const std::string command = "ogrinfo -ro -al " + path.string() + " 2>&1";
@@ -41,7 +41,7 @@ class Gdal : public testing::Test {
   testing_support::TemporaryFolder folder_;
 };
 
-/// Shapes in ogrinfo's well-known text, such as "POINT Z (1 2 3)".
+/// Returns the shapes in the well-known text of ogrinfo, such as "POINT Z (1 2 3)".
 Shapes shapes(const std::string& report, const std::string& kind) {
   Shapes found;
   std::istringstream lines(report);
@@ -62,7 +62,7 @@ Shapes shapes(const std::string& report, const std::string& kind) {
   return found;
 }
 
-/// 1e-8 degrees is a millimetre, and heights are written in millimetres.
+/// 1e-8 degrees correspond to 1 mm, and heights are written in millimetres.
 void expect_at(const Vector3d& read, const FlightPlan& plan, const Vector3d& position,
                double undulation) {
   const GeodeticPoint geodetic = LocalFrame(plan.site.origin).to_geodetic(position);
@@ -89,7 +89,7 @@ TEST_F(Gdal, ReadsExportedGeoJson) {
   const FlightPlan plan = sample_plan(vehicle_profile("generic"));
   const std::string text = report("mission.geojson", write_geojson(plan));
   expect_flight(text, plan, 0.0);
-  // The path, the stations, the fence and the two no-fly volumes.
+  // The path, the waypoints, the fence and the two no-fly volumes.
   EXPECT_NE(text.find("Feature Count: 8"), std::string::npos) << text;
   EXPECT_EQ(shapes(text, "POINT").size(), 4U);
   EXPECT_NE(text.find("WGS 84"), std::string::npos);

@@ -1,5 +1,4 @@
-// Validation rules of KMZ (WPML), KML, GeoJSON and Litchi's CSV, each on a file that breaks that
-// rule.
+// Validation rules of KMZ (WPML), KML, GeoJSON and Litchi CSV files. Each case breaks one rule.
 #include "flight/export/map_files.h"
 
 #include <cmath>
@@ -158,7 +157,7 @@ TEST(Kml, ReportsInvalidElements) {
   EXPECT_THAT(with("<LinearRing>\n            <coordinates>",
                    "<LinearRing>\n            <coordinates>0,0,0 "),
               Contains(HasSubstr("end with its first one")));
-  // Heights are above mean sea level: the ellipsoid's less the undulation of 46.7 m.
+  // Altitudes are AMSL: the ellipsoidal height minus the undulation of 46.7 m.
   const RouteFile route = read_kml(good);
   EXPECT_EQ(route.points[0].datum, HeightDatum::mean_sea_level);
   EXPECT_NEAR(route.points[0].height, 111.5 - 46.7 + plan.waypoints[0].position.z(), 1e-2);

@@ -1,4 +1,4 @@
-// Validation rules of .plan and .waypoints, each on a file that breaks just that rule.
+// Validation rules of .plan and .waypoints files. Each case breaks one rule.
 #include "flight/export/mavlink_files.h"
 
 #include <cmath>
@@ -33,7 +33,8 @@ Problems after(const std::function<void(json&)>& change) {
 
 json& item(json& plan, std::size_t i) { return plan["mission"]["items"][i]; }
 
-// At home's height whatever the ground's: PX4 adds the height of return to the point's own.
+// Rally points are at the home altitude independent of the terrain, because PX4 adds the return
+// altitude to the altitude of the rally point.
 TEST(PlanFile, ContainsVerifiedRallyPointsAtHomeHeight) {
   FlightPlan plan = sample_plan(vehicle_profile("generic"));
   plan.returns->rtl_profile.landings.emplace_back(35.0, 20.0, -1.0);
@@ -170,7 +171,7 @@ TEST(PlanFile, ContainsAnglesCapturesAndHoldsOfPlan) {
   }
 }
 
-// ---- the autopilots' dialects ----------------------------------------------------------------
+// ---- autopilot dialects ----------------------------------------------------------------------
 
 TEST(MissionItems, SetYawInPx4WaypointsAndInArduPilotConditionYaw) {
   const auto count = [](const std::vector<MissionItem>& items, int command) {
@@ -193,9 +194,9 @@ std::vector<int> commands(const std::vector<MissionItem>& items, std::size_t fir
   return result;
 }
 
-// ArduPilot starts gimbal and yaw on the way to the waypoint, in this order or the gimbal waits for
-// the yaw, and takes the picture between two delays, or the vehicle leaves while the shutter is
-// open.
+// ArduPilot starts the gimbal and then the yaw on the leg to the waypoint. In the reverse order the
+// gimbal would wait for the yaw. The capture is between two delays, because otherwise the vehicle
+// would leave while the shutter is open.
 TEST(MissionItems, AimEnRouteAndHoldAfterCaptureForArduPilot) {
   const FlightPlan plan = sample_plan(vehicle_profile("generic_ardupilot"));
   const std::vector<StopTime> times = stop_times(plan);
@@ -226,7 +227,7 @@ TEST(MissionItems, AimEnRouteAndHoldAfterCaptureForArduPilot) {
   EXPECT_EQ(stop, plan.waypoints.size());
 }
 
-// The speeds that the times are made with are in the file, whatever the vehicle is set to.
+// The file sets the speeds of the plan, independent of the vehicle's parameters.
 TEST(MissionItems, SetTheSpeedsOfThePlan) {
   const FlightPlan plan = sample_plan(vehicle_profile("generic_ardupilot"));
   const auto items = mission_items(plan);

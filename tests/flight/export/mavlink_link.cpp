@@ -8,7 +8,7 @@ namespace {
 constexpr std::uint8_t accepted = 0, invalid_sequence = 13;
 constexpr Address gcs{255, 190};
 
-/// The frame in these bytes, if they are one of a message that is known here.
+/// Returns the frame in these bytes if it contains a known message.
 std::optional<Frame> frame_in(const Bytes& bytes) {
   FrameReader reader(
       find_crc_extra<MissionRequestList, MissionCount, MissionAnswer, MissionRequest, WireItem>);

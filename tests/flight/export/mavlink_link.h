@@ -1,7 +1,7 @@
-/// The mission protocol of MAVLink 2, as far as it takes to upload a mission and fetch it back: its
-/// five messages, an autopilot's side and a ground station's side.
+/// Mission protocol of MAVLink 2 for the upload and download of a mission: five messages, the
+/// autopilot side and the ground station side.
 ///
-/// Source: MAVLink's common message set (numbers and fields of the messages).
+/// Source: common message set of MAVLink (numbers and fields of the messages).
 #pragma once
 
 #include <array>
@@ -41,7 +41,7 @@ struct MissionAnswer {
   static constexpr std::uint32_t id = 47;
   static constexpr const char* name = "MISSION_ACK";
   Address target{1, 1};
-  std::uint8_t result = 0;  ///< MAV_MISSION_RESULT, 0 is accepted
+  std::uint8_t result = 0;  ///< MAV_MISSION_RESULT; 0: accepted
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -63,12 +63,13 @@ struct MissionRequest {
   }
 };
 
-/// A mission item as the wire carries it.
+/// Mission item in wire format.
 struct WireItem {
   static constexpr std::uint32_t id = 73;
   static constexpr const char* name = "MISSION_ITEM_INT";
   std::array<float, 4> params{};
-  std::int32_t x = 0, y = 0;  ///< 1e-7 degrees in frames with places, else parameters 5 and 6
+  /// 1e-7 degrees in frames with positions, otherwise parameters 5 and 6.
+  std::int32_t x = 0, y = 0;
   float z = 0.0F;
   std::uint16_t sequence = 0, command = 0;
   Address target{1, 1};
@@ -89,10 +90,10 @@ struct WireItem {
   }
 };
 
-/// An autopilot's mission store.
+/// Mission storage of an autopilot.
 class Autopilot {
  public:
-  /// Its answer to a frame; nothing if it does not understand it.
+  /// Returns the answer to a frame; empty if the frame is not understood.
   std::optional<Bytes> receive(const Bytes& bytes);
   const std::vector<WireItem>& mission() const { return mission_; }
 
@@ -109,8 +110,8 @@ class Autopilot {
   std::uint8_t sequence_ = 0;
 };
 
-/// Uploads a mission; true if it was accepted. `corrupted` frames, counted from 0, are damaged on
-/// their way to the autopilot and sent again.
+/// Uploads a mission and returns true if it was accepted. The frame with the index `corrupted` is
+/// damaged on the way to the autopilot and sent again.
 bool upload(Autopilot& autopilot, const std::vector<WireItem>& items, int corrupted = -1);
 std::vector<WireItem> download(Autopilot& autopilot);
 

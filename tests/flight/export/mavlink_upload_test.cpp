@@ -1,4 +1,4 @@
-// What our mission files hold survives the upload to an autopilot and comes back the same.
+// Mission files are unchanged after upload to an autopilot and download.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ void expect_same(const std::vector<MissionItem>& sent, const std::vector<WireIte
     }
     EXPECT_EQ(back[i].z, static_cast<float>(sent[i].params[6]));
     if (!has_position(sent[i])) continue;
-    // 1e-7 degrees is the wire's unit: 11 mm.
+    // Resolution of the protocol: 1e-7 degrees (11 mm).
     EXPECT_NEAR(1e-7 * back[i].x, sent[i].params[4], 1e-7);
     EXPECT_NEAR(1e-7 * back[i].y, sent[i].params[5], 1e-7);
   }
@@ -80,7 +80,7 @@ TEST(MavlinkUpload, ResendsDamagedFrameAndRejectsPartialMission) {
   std::vector<WireItem> shuffled = wire;
   std::swap(shuffled[2].sequence, shuffled[3].sequence);
   EXPECT_FALSE(mavlink::upload(autopilot, shuffled));
-  expect_same(items, autopilot.mission());  // the one before is still there
+  expect_same(items, autopilot.mission());  // the previous mission is still stored
 }
 
 }  // namespace

@@ -25,8 +25,9 @@ FlightPlan make_plan(const char* vehicle) {
   return plan;
 }
 
-/// Mission Planner's reading (ParamFile.loadParamFile): lines split at commas, tabs and spaces, "#"
-/// begins a comment line, a name at most 16 characters long as in MAVLink's PARAM_SET.
+/// Parses like Mission Planner (ParamFile.loadParamFile). Lines are split at commas, tabs and
+/// spaces, "#" starts a comment line, and names have at most 16 characters as in MAVLink's
+/// PARAM_SET.
 std::map<std::string, double> read_as_mission_planner(const std::string& text) {
   std::map<std::string, double> values;
   std::istringstream stream(text);
@@ -41,8 +42,8 @@ std::map<std::string, double> read_as_mission_planner(const std::string& text) {
   return values;
 }
 
-/// QGroundControl's reading (ParameterManager::readParametersFromStream): five fields between tabs,
-/// the type 6 (int32) or 9 (float), an integer without a fraction.
+/// Parses like QGroundControl (ParameterManager::readParametersFromStream): five fields separated
+/// by tabs, the type 6 (int32) or 9 (float), integers without a fraction.
 std::map<std::string, double> read_as_qgroundcontrol(const std::string& text) {
   std::map<std::string, double> values;
   std::istringstream stream(text);
@@ -63,7 +64,7 @@ std::map<std::string, double> read_as_qgroundcontrol(const std::string& text) {
   return values;
 }
 
-// Centimetres under the old names, metres under those since 4.7.
+// Centimetres under the old names, metres under the names since 4.7.
 TEST(Parameters, SetArduPilotReturnAltitudeUnderBothNames) {
   const auto values = read_as_mission_planner(write_parameters(make_plan("generic_ardupilot")));
   EXPECT_EQ(values.at("RTL_ALT"), 4700);
@@ -76,7 +77,7 @@ TEST(Parameters, SetArduPilotReturnAltitudeUnderBothNames) {
   EXPECT_EQ(values.at("FS_GCS_ENABLE"), 1);
   EXPECT_EQ(values.at("BATT_FS_LOW_ACT"), 2);
   EXPECT_EQ(values.at("FENCE_ENABLE"), 1);
-  EXPECT_EQ(values.at("FENCE_TYPE"), 5);  // the sample's fence has a ceiling and corners
+  EXPECT_EQ(values.at("FENCE_TYPE"), 5);  // the sample fence has a ceiling and corners
   EXPECT_EQ(values.at("FENCE_ALT_MAX"), 60);
 }
 
@@ -148,7 +149,7 @@ TEST(Parameters, RequireVerifiedReturns) {
               testing::HasSubstr("does not use parameter files"));
 }
 
-// A ceiling leaves heights that are not whole metres: files and summaries state the same.
+// With a ceiling, altitudes may not be whole metres. Files and summaries contain the same value.
 TEST(ReturnAltitude, IsWrittenWithAllDecimals) {
   EXPECT_EQ(return_altitude_text(62.0), "62");
   EXPECT_EQ(return_altitude_text(42.7), "42.7");

@@ -42,7 +42,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 
 struct FileCase {
   Format format;
-  std::string vehicle;  ///< of the test vehicles
+  std::string vehicle;  ///< test vehicle
 };
 
 class PhotoFiles : public testing::TestWithParam<FileCase> {
@@ -165,7 +165,7 @@ TEST(PhotoRuns, AreStraightEvenAndOfOneAim) {
   EXPECT_EQ(photos_in_runs(with_photo_runs(unknown)), 0U);
 }
 
-// According to DJI's table of the action, with the heading of the vehicle for the gimbal.
+// As in DJI's table for this action. The gimbal uses the vehicle heading.
 TEST(PhotoWpml, OrientedShootsWhereTheVehicleHasThem) {
   const FlightPlan plan = photo_row_plan(mavic_3e());
   const KmzContent kmz = unpack_kmz(write_kmz(plan));

@@ -18,7 +18,7 @@ Obstacles sample_site() {
 
 namespace {
 
-/// Plans for these stations.
+/// Returns a plan for these capture points.
 FlightPlan plan_for(const Vehicle& vehicle, const std::vector<CapturePoint>& capture_points,
                     FlightStyle style, const std::optional<PhotoShutter>& photo = {}) {
   const Obstacles obstacles = sample_site();
@@ -38,7 +38,7 @@ FlightPlan plan_for(const Vehicle& vehicle, const std::vector<CapturePoint>& cap
   return flight_plan(route, 0, "sample", site, obstacles, Corners::rounded);
 }
 
-/// Stations that look at the middle of the building.
+/// Returns capture points that look at the centre of the building.
 std::vector<CapturePoint> stations_at(const std::vector<Eigen::Vector3d>& positions) {
   std::vector<CapturePoint> capture_points;
   for (const Eigen::Vector3d& position : positions) {

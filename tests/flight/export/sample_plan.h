@@ -1,4 +1,4 @@
-/// A small flight over a small site, for the tests of the formats.
+/// Small flight at a small site, for the tests of the formats.
 #pragma once
 
 #include "flight/clearance/obstacles.h"
@@ -8,18 +8,21 @@
 
 namespace skycap::flight {
 
-/// A building of 20 x 20 x 15 m on flat ground, a heliport that is flown past and a low shed zone
-/// that is flown over, all inside a fence.
+/// Returns a building of 20 x 20 x 15 m on flat ground, inside a fence. The flight passes next to a
+/// heliport and above a low shed zone.
 Obstacles sample_site();
 
-/// Four stations around the building, near Oxford's meridian, planned for that vehicle at 2 m.
+/// Returns a plan for four capture points around the building, near Oxford, for this vehicle at 2 m
+/// clearance.
 FlightPlan sample_plan(const Vehicle& vehicle);
 
-/// Six photos of the building's south side, one every 3 m along a row at a height of 8 m, with a
-/// camera whose motion blur limits the speed to 2.5 m/s. Stops at all of them.
+/// Returns a plan for six photos of the south side of the building, one every 3 m in a row at a
+/// height of 8 m. The camera's motion blur limits the speed to 2.5 m/s. The vehicle stops at each
+/// photo.
 FlightPlan photo_row_plan(const Vehicle& vehicle);
 
-/// From one side of that building to the other and back: legs with corners, flown in that style.
+/// Returns a plan from one side of the building to the other and back, with corners, in this flight
+/// style.
 FlightPlan corner_plan(FlightStyle style);
 
 }  // namespace skycap::flight

@@ -21,13 +21,13 @@ using testing::HasSubstr;
 using Context = std::unique_ptr<PJ_CONTEXT, decltype(&proj_context_destroy)>;
 using Object = std::unique_ptr<PJ, decltype(&proj_destroy)>;
 
-/// Radcliffe Square, Oxford; a place just south of the equator, whose zone's other half is north of
-/// it; one far in the south and near its zone's border.
+/// Radcliffe Square in Oxford; a position just south of the equator in a zone that extends north of
+/// it; a position in the far south near the border of its zone.
 const Site oxford{{51.75343, -1.25401, 110.0}, {}};
 const Site quito{{-0.002, -78.45, 2850.0}, {}};
 const Site ushuaia{{-54.8, -66.02, 40.0}, {}};
 
-/// Length of the meridian of WGS84 from the equator, by Simpson's rule.
+/// Returns the length of the WGS84 meridian from the equator, by Simpson's rule.
 double meridian(double latitude) {
   constexpr double a = 6378137.0, f = 1.0 / 298.257223563, e2 = f * (2.0 - f);
   const auto curvature = [](double phi) {
@@ -43,8 +43,8 @@ double meridian(double latitude) {
   return sum * step / 6.0;
 }
 
-// Closed form: on the central meridian the easting is 500 km, and the northing the meridian's
-// length times 0.9996.
+// Closed form: on the central meridian the easting is 500 km and the northing is 0.9996 times the
+// length of the meridian.
 TEST(Utm, MatchesClosedFormOnCentralMeridian) {
   for (const double latitude_deg : {0.0, 10.0, 51.0, 83.0}) {
     const UtmProjection utm({{latitude_deg, -3.0, 12.0}, {}});
@@ -52,12 +52,13 @@ TEST(Utm, MatchesClosedFormOnCentralMeridian) {
     EXPECT_EQ(utm.epsg(), 32630);
     EXPECT_NEAR(position.x(), 500'000.0, 1e-6);
     EXPECT_NEAR(position.y(), 0.9996 * meridian(latitude_deg * std::numbers::pi / 180.0), 1e-4);
-    EXPECT_NEAR(position.z(), 12.0, 1e-8);  // rounding of 6,378 km
+    EXPECT_NEAR(position.z(), 12.0, 1e-8);  // rounding error at 6,378 km
   }
 }
 
-// Of PROJ, from the coordinate system that is written into files: all three coordinates, to its
-// 0.1 mm. The last point is over the equator from Quito, where its zone's false northing stays.
+// Compares all three coordinates with PROJ, to 0.1 mm, for the coordinate system that is written to
+// files. The last point is north of the equator, where the false northing of Quito's zone still
+// applies.
 TEST(Utm, MatchesProjForWrittenWkt) {
   const Context context(proj_context_create(), proj_context_destroy);
   for (const Site& site : {oxford, quito, ushuaia}) {

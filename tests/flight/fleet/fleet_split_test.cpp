@@ -22,7 +22,7 @@ using Eigen::Vector3d;
 
 using Order = std::vector<std::uint32_t>;
 
-/// A flat world: times are metres, and so are energies.
+/// Returns a problem in a flat world in which times and energies equal distances [m].
 FleetProblem flat_problem(std::uint64_t seed, std::size_t capture_points,
                           const std::vector<Vector3d>& pads) {
   std::mt19937_64 random(seed);
@@ -52,7 +52,7 @@ Order counted(std::size_t count) {
   return order;
 }
 
-/// Every way of cutting the order in as many runs as there are vehicles.
+/// Tries all splits of the order into one run for each vehicle.
 double best_cut(const FleetProblem& problem, std::span<const std::uint32_t> order, std::size_t v,
                 FleetGoal goal) {
   if (v + 1 == problem.vehicles.size()) return part_time(problem.vehicles[v], order);
@@ -65,8 +65,8 @@ double best_cut(const FleetProblem& problem, std::span<const std::uint32_t> orde
   return best;
 }
 
-/// Whatever the battery: the least time of one tour through each set of stations (Held & Karp
-/// 1962), by the set's bits.
+/// Returns the minimum time of one tour through each set of capture points, without battery limits
+/// (Held & Karp 1962). The index is the bit set.
 std::vector<double> best_tours(const FleetVehicle& vehicle) {
   const std::size_t count = vehicle.count(), sets = std::size_t{1} << count;
   std::vector<double> leg_costs(sets * count, never), tours(sets, never);
@@ -88,10 +88,10 @@ std::vector<double> best_tours(const FleetVehicle& vehicle) {
   return tours;
 }
 
-/// The best of all ways of sharing the stations out.
+/// Returns the minimum over all assignments of capture points to vehicles.
 double optimum(const FleetProblem& problem, FleetGoal goal) {
   const std::size_t sets = std::size_t{1} << problem.count();
-  std::vector<double> best(sets, never);  // of each set, by the vehicles so far
+  std::vector<double> best(sets, never);  // for each set, with the vehicles so far
   best[0] = 0.0;
   for (const FleetVehicle& vehicle : problem.vehicles) {
     const std::vector<double> tours = best_tours(vehicle);
@@ -135,7 +135,7 @@ TEST(FleetSplit, MatchesBestCutOfOrder) {
   }
 }
 
-// A battery that holds half of the tour: the time is that of the split into sorties.
+// The battery is enough for half of the tour. The time equals that of the split into sorties.
 TEST(FleetSplit, UsesSeveralSortiesWhenBatteryIsTooSmall) {
   FleetProblem problem = flat_problem(3, 10, {{0, 0, 0}});
   const Order order = counted(10);
@@ -155,7 +155,8 @@ TEST(FleetSplit, UsesSeveralSortiesWhenBatteryIsTooSmall) {
   EXPECT_TRUE(share_among(problem, order, FleetGoal::makespan).parts.empty());
 }
 
-// Against all ways of sharing nine stations out: what is found is the best, and both bounds are.
+// Compares with all assignments of nine capture points: the solution and both bounds must match the
+// optimum.
 TEST(FleetSplit, MatchesOptimumOfSmallCasesAndKeepsBounds) {
   double min_bound = 1.0, min_collected = 1.0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
@@ -181,26 +182,26 @@ TEST(FleetSplit, MatchesOptimumOfSmallCasesAndKeepsBounds) {
       min_collected = std::min(min_collected, collected / soonest);
     }
   }
-  // Tours that come to a station twice cost the rest.
+  // Random tours visit some capture points twice, which lowers these ratios.
   EXPECT_GE(min_bound, 0.8);
   EXPECT_GE(min_collected, 0.8);
   RecordProperty("least_bound", std::to_string(min_bound));
   RecordProperty("least_collected", std::to_string(min_collected));
 }
 
-// One vehicle's share is a tour: it is no longer than LEMON's.
+// With one vehicle, the tour must not be longer than LEMON's.
 TEST(FleetSplit, IsNotLongerThanLemonTourForOneVehicle) {
   double sum = 0.0;
   for (const std::size_t count : {50, 80}) {
     const FleetProblem problem = flat_problem(count, count, {{30, 0, 0}});
     const FleetVehicle& vehicle = problem.vehicles.front();
-    const std::size_t point_count = count + 1;  // the pad last
+    const std::size_t point_count = count + 1;  // the pad is the last point
     std::vector<double> costs(point_count * point_count, 0.0);
     for (std::uint32_t i = 0; i < count; ++i) {
       costs[i * point_count + count] = costs[count * point_count + i] = vehicle.out[i].time;
       for (std::uint32_t j = 0; j < count; ++j) costs[i * point_count + j] = vehicle.leg(i, j).time;
     }
-    // A landing takes ten seconds more than a take-off, a station two.
+    // A landing takes 10 s more than a take-off, and each capture point takes 2 s.
     const double others = 10.0 + 2.0 * static_cast<double>(count);
     const double library = others + lemon_tour(point_count, costs);
     const double ours = share_among(problem, counted(count), FleetGoal::makespan, 2).makespan;
@@ -211,7 +212,8 @@ TEST(FleetSplit, IsNotLongerThanLemonTourForOneVehicle) {
   RecordProperty("mean_of_library", std::to_string(sum / 2.0));
 }
 
-// A station on each of three sides, a vehicle for each: who flies to one has time for no other.
+// One capture point on each of three sides and one vehicle for each: a vehicle that visits one has
+// no time for another.
 TEST(CollectionBound, IsTightWhenEveryVehicleHasToFlyFar) {
   FleetProblem problem = flat_problem(1, 3, {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}});
   for (FleetVehicle& vehicle : problem.vehicles) {
@@ -223,7 +225,7 @@ TEST(CollectionBound, IsTightWhenEveryVehicleHasToFlyFar) {
   }
   EXPECT_GT(collection_bound(problem, 300.0), 198.0);
   EXPECT_LE(collection_bound(problem, 300.0), 200.0);
-  problem.vehicles.pop_back();  // one of two has two stations
+  problem.vehicles.pop_back();  // one of the two vehicles has two capture points
   EXPECT_GT(collection_bound(problem, 400.0), 347.0);
   EXPECT_LE(collection_bound(problem, 400.0), 350.0);
 }
@@ -245,7 +247,8 @@ TEST(FleetSplit, ImprovesThroughExchangesAndAnnealing) {
   }
 }
 
-// Two that fly twice as fast get more to do than one that does not, but each some.
+// Two vehicles with double speed get more capture points than the slow one, but each vehicle gets
+// some.
 TEST(FleetSplit, AssignsMoreCapturePointsToFasterVehicle) {
   FleetProblem problem = flat_problem(8, 30, {{0, 0, 0}, {0, 0, 0}});
   for (auto* parts : {&problem.vehicles[1].out, &problem.vehicles[1].back,
@@ -265,8 +268,8 @@ FleetMember make_member(const Vehicle& vehicle, const Eigen::Vector2d& wind = {0
   return member;
 }
 
-// The least cost is one whatever way is flown: straight, or with a stop in a corner. From rest to
-// rest is faster than the autopilot's braking, but not twice as fast.
+// The minimum cost is a lower bound for straight paths and for paths with a stop at a corner.
+// Rest-to-rest motion is faster than the autopilot's braking law, but not twice as fast.
 TEST(FleetCosts, AreLowerBoundsForPathsAroundCorner) {
   std::mt19937_64 random(4);
   const Eigen::AlignedBox3d box(Vector3d(0, 0, 0), Vector3d(60, 60, 40));
@@ -289,8 +292,8 @@ TEST(FleetCosts, AreLowerBoundsForPathsAroundCorner) {
   }
 }
 
-// A place of the straight line is not free: whatever way is flown round the ball about it, with one
-// corner or with two, takes no less.
+// The straight line is blocked by a ball. All paths around it, with one or two corners, take at
+// least the lower bound.
 TEST(FleetCosts, AreLowerBoundsForPathsAroundBall) {
   std::mt19937_64 random(6);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);

@@ -1,4 +1,5 @@
-// LEMON 1.3.1 asks of allocators what C++20 took from them: this source is compiled as C++17.
+// LEMON 1.3.1 uses allocator members that C++20 removed. This source is therefore compiled as
+// C++17.
 #include "tests/flight/fleet/lemon_tours.h"
 
 #include <algorithm>
@@ -15,7 +16,7 @@ namespace {
 
 using Costs = lemon::FullGraph::EdgeMap<double>;
 
-/// A heuristic's tour after 2-opt.
+/// Returns a heuristic's tour length after 2-opt.
 template <typename Heuristic>
 double improved(const lemon::FullGraph& graph, const Costs& costs) {
   Heuristic heuristic(graph, costs);

@@ -1,4 +1,4 @@
-/// Tours by LEMON, an independent library of graph algorithms: twins of what fleets fly.
+/// Tours computed by LEMON, an independent graph library, as reference for fleet tours.
 #pragma once
 
 #include <cstddef>
@@ -6,9 +6,9 @@
 
 namespace skycap::flight {
 
-/// The shortest tour that LEMON's heuristics find (nearest neighbour, greedy, insertion,
-/// Christofides, 2-opt after each) through all of `count` places at the symmetric costs
-/// costs[i * count + j].
+/// Returns the length of the shortest tour that LEMON's heuristics find through all `count` points
+/// (nearest neighbour, greedy, insertion, Christofides, each followed by 2-opt). The costs costs[i
+/// * count + j] are symmetric.
 double lemon_tour(std::size_t count, const std::vector<double>& costs);
 
 }  // namespace skycap::flight

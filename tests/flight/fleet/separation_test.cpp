@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 
 constexpr double jerk = 5.0;
 
-/// A leg at up to `speed`, which takes as long as seven phases do, and a wait.
+/// Returns a leg with up to `speed`, the duration of the seven-phase motion, and a wait.
 ScriptedLeg leg_between(const Vector3d& from, const Vector3d& to, double speed, double wait) {
   const double acceleration = 2.0;
   return {.from = from,
@@ -34,7 +34,8 @@ Vector3d position_at(const TimedFlight& flight, double time) {
   return flight.script.back().to;
 }
 
-/// The least distance of places at times `step` apart, each within the tolerance of both.
+/// Returns the minimum distance of positions sampled every `step`, within the time tolerance of
+/// both flights.
 double sampled(const TimedFlight& first, const TimedFlight& second, double tolerance, double step) {
   double min_distance = 1e9;
   for (double t = first.start; t <= first.landing(); t += step) {
@@ -60,7 +61,8 @@ TEST(Separation, IsZeroForHeadOnAndGapForParallelFlights) {
   EXPECT_TRUE(too_near(there, beside, {.distance = 7.01}));
 }
 
-// One crosses where the other has been: far apart on time, together if both may be as late.
+// One flight crosses the other's path later. The flights are far apart on schedule, but may meet if
+// both are delayed.
 TEST(Separation, DecreasesWithTimeTolerance) {
   const TimedFlight first{{leg_between({-20, 0, 10}, {20, 0, 10}, 4.0, 0.0)}, jerk, 0.0};
   const TimedFlight second{{leg_between({0, -20, 10}, {0, 20, 10}, 4.0, 0.0)}, jerk, 8.0};
@@ -95,8 +97,8 @@ TEST(Separation, ReportsEncounterPositions) {
   EXPECT_NEAR((encounter->second - Vector3d(20, 3, 10)).norm(), 0.0, 1e-9);
 }
 
-// 100,000 random pairs of timed legs: what is certified no sampling refutes, what is refused is
-// too near indeed, and the bound is the sampled distance but for what samples miss.
+// 100,000 random pairs of timed legs. No sample contradicts a verified separation, each rejected
+// pair is too close, and the bound equals the sampled distance within the sampling error.
 TEST(Separation, IsNotMoreThanSampledDistanceOfRandomLegs) {
   std::mt19937_64 random(11);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
@@ -123,8 +125,8 @@ TEST(Separation, IsNotMoreThanSampledDistanceOfRandomLegs) {
     if (i % 10 != 0) continue;
     const double bound = verified_distance(first, second, tolerance, 200.0);
     ASSERT_LE(bound, min_distance + 1e-9) << "pair " << i;
-    if (min_distance > 1e8) continue;  // together for less than a step, if at all
-    // Samples of both are at most a step from the nearest places, at up to 10 m/s each.
+    if (min_distance > 1e8) continue;  // both fly at the same time for less than one step, or never
+    // The closest positions are at most one step from a sample, at up to 10 m/s for each flight.
     ASSERT_GE(bound, std::min(200.0, min_distance) - 2.0 * 10.0 * step - 2e-3) << "pair " << i;
   }
   EXPECT_GT(verified, 30'000);

@@ -19,7 +19,7 @@ ScriptedLeg leg_between(const Vector3d& from, const Vector3d& to) {
           .acceleration = 2.0};
 }
 
-/// Up, to a place and back, down.
+/// Returns a flight that climbs, flies to `position` and back, and descends.
 FlightScript there_and_back(const Vector3d& pad, const Vector3d& position) {
   const Vector3d above = pad + Vector3d(0, 0, 6);
   return {leg_between(pad, above), leg_between(above, position), leg_between(position, above),
@@ -35,7 +35,7 @@ std::vector<TimedFlight> make_flights(const std::vector<FleetSortie>& sorties,
   return flights;
 }
 
-/// Whether flights of different vehicles come too near to each other.
+/// Returns true if flights of different vehicles violate the separation.
 bool has_conflict(const std::vector<TimedFlight>& flights,
                   const std::vector<std::size_t>& vehicle_indices, const SeparationRule& rule) {
   for (std::size_t i = 0; i < flights.size(); ++i) {
@@ -56,7 +56,7 @@ TEST(Timetable, StartsSeparateFlightsAtOnce) {
   EXPECT_NEAR(table.makespan, duration(sorties[0].script), 1e-9);
 }
 
-// They cross. No other pair of starts, one of them at once, has the last landing sooner.
+// The paths cross. No other pair of start times, with one start at 0, has an earlier last landing.
 TEST(Timetable, HasMinimalDelayForCrossingFlights) {
   const std::vector<FleetSortie> sorties{{0, 0, there_and_back({0, 0, 0}, {40, 60, 10}), jerk},
                                          {1, 0, there_and_back({40, 0, 0}, {0, 40, 10}), jerk}};
@@ -75,7 +75,7 @@ TEST(Timetable, HasMinimalDelayForCrossingFlights) {
   }
 }
 
-// The same way for all: nothing helps but one after the other.
+// All vehicles have the same path, so they can only fly one after the other.
 TEST(Timetable, FliesSequentiallyWhenPathsAreShared) {
   std::vector<FleetSortie> sorties;
   for (std::size_t v = 0; v < 3; ++v) {
@@ -86,7 +86,8 @@ TEST(Timetable, FliesSequentiallyWhenPathsAreShared) {
   EXPECT_FALSE(has_conflict(make_flights(sorties, table), {0, 1, 2}, rule));
   const double one = duration(sorties[0].script);
   EXPECT_GE(table.makespan, 3.0 * one + 4.0 * rule.tolerance);
-  EXPECT_LE(table.makespan, 3.0 * one + 4.0 * rule.tolerance + 6.0);  // whole seconds
+  // Start times are whole seconds.
+  EXPECT_LE(table.makespan, 3.0 * one + 4.0 * rule.tolerance + 6.0);
   EXPECT_NEAR(table.delay, table.makespan - one, 1e-9);
 }
 
@@ -100,7 +101,7 @@ TEST(Timetable, StartsNextSortieAfterLanding) {
   EXPECT_LE(table.starts[0], duration(sorties[1].script) + 1.0);
 }
 
-// The way to the left crosses that of the other vehicle, the one to the right is a little longer.
+// The left path crosses that of the other vehicle; the right path is slightly longer.
 TEST(Timetable, SelectsVariantThatLandsFirst) {
   std::vector<FleetSortie> sorties{{0, 0, there_and_back({0, 0, 0}, {0, 50, 10}), jerk},
                                    {1, 0, there_and_back({30, 0, 0}, {0, 40, 10}), jerk, 0},

@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 
 using Order = std::vector<std::uint32_t>;
 
-/// Four buildings with streets between them.
+/// Returns four buildings with streets between them.
 Obstacles block() {
   Obstacles obstacles;
   for (const double x : {-40.0, 10.0}) {
@@ -30,7 +30,7 @@ Obstacles block() {
   return obstacles;
 }
 
-/// In the streets and above the roofs, looking this way and that.
+/// Returns capture points in the streets and above the roofs, with random directions.
 std::vector<CapturePoint> random_capture_points(const FreeSpace& space, std::uint32_t count) {
   std::mt19937_64 random(7);
   std::vector<CapturePoint> capture_points;
@@ -63,7 +63,8 @@ class VerifiedBlockCosts : public testing::Test {
   std::vector<FleetMember> fleet = members();
 };
 
-// What routes are chosen by is what they then take, in whatever order, in one sortie or in several.
+// The costs used for the selection of routes equal the times of the planned routes, for any order
+// and number of sorties.
 TEST_F(VerifiedBlockCosts, MatchPlannedRouteTimes) {
   constexpr std::uint32_t count = 14;
   const std::vector<CapturePoint> capture_points = random_capture_points(space, count);
@@ -109,11 +110,11 @@ TEST_F(VerifiedBlockCosts, AreNotBelowLowerBoundAndIndependentOfThreadCount) {
         if (costs.leg(i, j).time > lower_bound.leg(i, j).time) ++verified;
       }
     }
-    EXPECT_GE(verified, 24U * 10U);  // each station's nearest, at least one way
+    EXPECT_GE(verified, 24U * 10U);  // at least one path to each neighbour of each capture point
   }
 }
 
-// In a building.
+// Inside a building.
 TEST_F(VerifiedBlockCosts, AreInfiniteForUnreachableCapturePoints) {
   std::vector<CapturePoint> capture_points = random_capture_points(space, 6);
   capture_points[2].view.position = {-25, -25, 10};

@@ -1,4 +1,5 @@
-// Route files as other programs write them: flown as our own, or refused for the true reason.
+// Route files of other programs are interpreted like Skycap's files, or rejected for the right
+// reason.
 #include <functional>
 
 #include <gmock/gmock.h>
@@ -21,7 +22,7 @@ using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// All places of `from` are replaced.
+/// Replaces all occurrences of `from`.
 std::string all_replaced(std::string text, const std::string& from, const std::string& to) {
   std::size_t count = 0;
   for (std::size_t i = 0; (i = text.find(from, i)) != std::string::npos; i += to.size()) {
@@ -32,7 +33,7 @@ std::string all_replaced(std::string text, const std::string& from, const std::s
   return text;
 }
 
-/// The text with its line of that number, from 1, replaced.
+/// Replaces the line with this number, counted from 1.
 std::string with_line(const std::string& text, std::size_t number, const std::string& line) {
   std::vector<std::string> lines = split_lines(text);
   lines.at(number - 1) = line;
@@ -112,7 +113,7 @@ TEST(RejectedWaypointsFiles, NameTheCause) {
               HasSubstr("line 4 has 3 fields separated by tabs or blanks; it must have 12"));
 }
 
-// PX4 takes a place of zeros literally.
+// PX4 uses a position of zeros literally.
 TEST(RejectedWaypointsFiles, IncludePx4LandingsWithoutPosition) {
   MavlinkMission file = sample_file(AutopilotType::px4);
   file.items.back().params[4] = file.items.back().params[5] = 0.0;
@@ -131,7 +132,7 @@ struct PlanCase {
 class ForeignPlanFiles : public testing::TestWithParam<PlanCase> {};
 
 TEST_P(ForeignPlanFiles, AreInterpretedLikeExportedFiles) {
-  // The rules of the fence are those of another test: a file without one lacks the mission's.
+  // The fence rules are tested elsewhere. A file without a fence violates them.
   FlightFacts facts = sample_facts(AutopilotType::px4);
   facts.no_fly.clear(), facts.fence.reset();
   json plan = our_plan();
@@ -316,7 +317,7 @@ TEST(RejectedKmzFiles, NameTheCause) {
   EXPECT_THAT(error_message(pack_kmz(moved)), HasSubstr("template.kml and waylines.wpml differ"));
 }
 
-// Pilot 2: the template above the geoid, the waylines above the ellipsoid.
+// Pilot 2: the template is relative to the geoid, the waylines to the ellipsoid.
 TEST(ForeignKmzFiles, MayUseDifferentAltitudeReferences) {
   KmzContent kmz = unpack_kmz(write_kmz(dji_plan()));
   const LocalFrame frame(dji_plan().site.origin);

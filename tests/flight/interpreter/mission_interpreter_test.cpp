@@ -1,5 +1,5 @@
-// What autopilots do with spoiled missions: every kind that a review found to pass as "fine" is
-// refused by its item, or proven as it is flown.
+// Interpretation of corrupted missions. Each kind of corruption that a review found undetected is
+// now rejected with its item, or verified as it is flown.
 #include "flight/interpreter/mission_interpreter.h"
 
 #include <algorithm>
@@ -35,7 +35,7 @@ class MissionInterpreter : public testing::TestWithParam<AutopilotType> {
     change(file);
     return find_problems(file, GetParam());
   }
-  /// The problem names the item of that index, by its number.
+  /// Matches a problem that names the item of this index by its number.
   static auto names(const MavlinkMission& file, std::size_t index, const std::string& what) {
     return Contains(
         AllOf(testing::StartsWith(item_label(file.items[index]) + " "), HasSubstr(what)));
@@ -52,7 +52,7 @@ TEST_P(MissionInterpreter, AcceptsExportedFiles) {
   EXPECT_THAT(find_problems(good(), GetParam()), IsEmpty());
 }
 
-// The promise of the table: whatever is not in it is refused by its item.
+// Commands that are not in the table are rejected with their item.
 TEST_P(MissionInterpreter, RejectsEveryUnknownCommand) {
   const MavlinkMission file = good();
   MavlinkMission corrupted = file;
@@ -102,7 +102,7 @@ TEST_P(MissionInterpreter, RejectsLandingsOffTheTakeOffPoint) {
               names(good(), i, "RETURN_TO_LAUNCH"));
   EXPECT_THAT(after([&](MavlinkMission& f) { f.items[i - 1].command = command::return_to_launch; }),
               names(good(), i - 1, "RETURN_TO_LAUNCH"));
-  // A landing in mid-route ends the flight there.
+  // A landing in the middle of the route ends the flight there.
   const std::size_t middle = find_index(good(), command::waypoint, 2);
   EXPECT_THAT(after([&](MavlinkMission& f) { f.items[middle].command = command::land; }),
               AllOf(names(good(), middle, "m from the take-off point"),
@@ -170,7 +170,7 @@ TEST_P(MissionInterpreter, RejectsHomeAwayFromTakeOffPoint) {
               names(good(), i, "not above the take-off point"));
 }
 
-// One item above sea level says nothing of the others.
+// The altitude reference of one item does not affect the others.
 TEST_P(MissionInterpreter, AppliesAltitudeReferencePerItem) {
   const std::size_t i = find_index(good(), command::waypoint, 1);
   const double pad_amsl = 111.5 - 46.7;
@@ -206,7 +206,7 @@ TEST_P(MissionInterpreter, RejectsZeroPositionsAndHeights) {
 }
 
 TEST_P(MissionInterpreter, FollowsJumps) {
-  // Back from the last station to the first, through the building, twice.
+  // Jumps twice from the last capture point back to the first, through the building.
   const std::size_t end = find_index(good(), command::land) - 1;
   const auto jump_to = [&](double number, double repeats) {
     return after([&](MavlinkMission& f) {
@@ -223,7 +223,7 @@ TEST_P(MissionInterpreter, FollowsJumps) {
 
 TEST_P(MissionInterpreter, RejectsChangedFenceAndRallyPoints) {
   if (GetParam() == AutopilotType::ardupilot) {
-    // .waypoints hold no fence: the route alone is judged.
+    // .waypoints files cannot contain a fence. Only the route is checked.
     EXPECT_FALSE(good().supports_fence);
     return;
   }
@@ -250,7 +250,7 @@ TEST_P(MissionInterpreter, RejectsChangedFenceAndRallyPoints) {
               Contains(HasSubstr("rallyPoints.points[0] is not in the mission's")));
 }
 
-// Returns go to the nearest place to land, so the file must hold those that are proven.
+// The vehicle returns to the nearest rally point, so the file must contain the verified ones.
 TEST_P(MissionInterpreter, RejectsMissingOrRaisedRallyPoints) {
   FlightFacts facts = sample_facts(GetParam());
   facts.rally = {{35, 35, 0}};
@@ -284,7 +284,7 @@ TEST_P(MissionInterpreter, RejectsItemsThatAreNotExecuted) {
   EXPECT_THAT(waiting(-1), Contains(HasSubstr("item 999 (command 93) waits for -1.0 s")));
 }
 
-// A corner without a stop is cut: the triangle of its two legs must be free.
+// A corner without a stop is cut. The triangle of its two legs must be free.
 TEST_P(MissionInterpreter, VerifiesCornersWithoutStopAsTriangles) {
   const auto rounded = [&](const Eigen::Vector3d& corner) {
     MavlinkMission file = good();
@@ -307,7 +307,8 @@ TEST_P(MissionInterpreter, VerifiesCornersWithoutStopAsTriangles) {
   };
   EXPECT_THAT(rounded({-40, 0, 8}), IsEmpty());
   EXPECT_THAT(rounded({-13, 0, 8}), IsEmpty());
-  // Round the corner by a point far out to the east: both legs are free, their triangle is not.
+  // Around the corner through a point far in the east: both legs are free, but their triangle is
+  // not.
   const Eigen::Vector3d corner(27, -13, 34);
   EXPECT_THAT(check_route({{-20, -25, 8}, corner, {-20, 25, 8}}, KnownSpace(sample_site()), 2.0),
               IsEmpty());
@@ -340,7 +341,7 @@ TEST(ItemOrder, UnrollsJumps) {
   EXPECT_THAT(compute_order(nested).problems, ElementsAre(HasSubstr("ten times as long")));
 }
 
-// Property: a fan that is proven keeps its clearance on every one of its legs.
+// Property: all legs in a verified fan keep the clearance.
 TEST(InterpretedRoute, KeepsClearanceOnAllLegsOfVerifiedFan) {
   const KnownSpace space(sample_site());
   std::mt19937_64 random(3);

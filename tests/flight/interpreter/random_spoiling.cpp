@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 
 constexpr double degree = std::numbers::pi / 180.0;
 
-/// The numbers in a WPML text, by place and length.
+/// Returns the offset and length of each number in a WPML text.
 std::vector<std::pair<std::size_t, std::size_t>> find_numbers(const std::string& text) {
   std::vector<std::pair<std::size_t, std::size_t>> found;
   for (std::size_t i = text.find("<wpml:missionConfig>"); i < text.size(); ++i) {

@@ -1,5 +1,4 @@
-/// Random changes to mission files, and where a vehicle goes that flies what is left: computed
-/// without the product's code.
+/// Random changes to mission files, and the resulting flight, computed without the product's code.
 #pragma once
 
 #include <random>
@@ -13,37 +12,40 @@
 
 namespace skycap::flight {
 
-/// Where a mission's frame and its pad are on the Earth.
+/// Georeference of the mission frame and the pad.
 struct Ground {
-  double latitude_deg = 0.0, longitude_deg = 0.0, height = 0.0;  ///< of the frame's origin
+  /// Geodetic position of the frame's origin.
+  double latitude_deg = 0.0, longitude_deg = 0.0, height = 0.0;
   double undulation = 0.0;
   Eigen::Vector3d pad = Eigen::Vector3d::Zero();
 
-  /// A place that is `up` above the pad, by the ellipsoid's radii at the origin: good to some
-  /// millimetres within 200 m.
+  /// Returns the local position at `up` above the pad, with the radii of the ellipsoid at the
+  /// origin. The error is a few millimetres within 200 m.
   Eigen::Vector3d position(double latitude, double longitude, double up) const;
 
-  /// Degrees north and east, and metres above the pad, of all within so far of the origin.
+  /// Returns the box [degrees north, degrees east, metres above the pad] around the origin.
   Eigen::AlignedBox3d around(double half_width, double max_height) const;
 };
 
-/// One random change to one random item: another command, frame, parameter, height, order, a jump,
-/// a place in `site`, which is as Ground::around() says. Numbers stay those of the places in the
-/// file.
+/// Applies one random change to one random item: command, frame, parameter, altitude, order, a
+/// jump, or a position in `site` (see Ground::around()). The numbers remain valid for the file's
+/// positions.
 void corrupt(MavlinkMission& file, std::mt19937_64& random, const Eigen::AlignedBox3d& site);
 
-/// The text of a WPML file with one of its numbers changed.
+/// Returns the WPML text with one of its numbers changed.
 std::string corrupted(std::string wpml, std::mt19937_64& random);
 
-/// The places that an autopilot flies to: the pad, those of the items in order, jumps followed, and
-/// where it lands.
+/// Returns the positions that an autopilot flies to: the pad, the items in order with jumps, and
+/// the landing position.
 std::vector<Eigen::Vector3d> make_flight(const std::vector<MissionItem>& items,
                                          const Ground& ground);
 
-/// The places of a WPML file's waypoints, read without an XML parser, between the pad's.
+/// Returns the positions of the waypoints in a WPML file, read without an XML parser, with the pad
+/// before and after.
 std::vector<Eigen::Vector3d> make_flight(const std::string& wayline, const Ground& ground);
 
-/// Whether straight lines between the places keep the clearance, less the rounding of files.
+/// Returns true if the straight lines between the positions keep the clearance, minus the rounding
+/// of files.
 bool keeps_clear(const CgalOracle& oracle, const std::vector<Eigen::Vector3d>& positions,
                  double clearance);
 

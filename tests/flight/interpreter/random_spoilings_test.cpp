@@ -1,5 +1,5 @@
-// Random spoilings of every kind of mission file: each is refused, or an independent flight of the
-// same items keeps its distance from the building by CGAL's exact distances.
+// Random corruptions of each kind of mission file. Each file is rejected, or an independent flight
+// of its items keeps the clearance according to CGAL's exact distances.
 #include <random>
 
 #include <gmock/gmock.h>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr int corruptions = 200;
 
-/// The sample's.
+/// Georeference of the sample plan.
 const Ground ground{51.753458, -1.254022, 111.5, 46.7, {-30, -25, 0}};
 
 bool keeps_clear(const std::vector<Eigen::Vector3d>& positions) {

@@ -26,7 +26,7 @@ using testing::Not;
 
 constexpr double degree = geometry::radians_per_degree;
 
-/// Returns a scanner mount directed to the left of the nose and 30 degrees down.
+/// Scanner mount that points to the left of the nose and 30 degrees down.
 const ScannerAim to_the_left{.azimuth = 0.5 * std::numbers::pi, .pitch = -30.0 * degree};
 
 FlightPlan plan_with(int payload) {
@@ -41,7 +41,7 @@ FlightPlan plan_with(int payload) {
   return plan;
 }
 
-constexpr double plenty = 1e9;  // Sufficient energy [J].
+constexpr double plenty = 1e9;  // Energy that is always sufficient [J].
 
 const FlightPlan& commanded() {
   static const FlightPlan plan = [] {

@@ -1,4 +1,4 @@
-// What DJI aircraft, and Litchi, do with spoiled files: refused by waypoint or line.
+// Interpretation of corrupted DJI and Litchi files. Problems name the waypoint or the line.
 #include "flight/interpreter/wpml_interpreter.h"
 
 #include <gmock/gmock.h>
@@ -27,7 +27,7 @@ const KmzContent& good() {
   return content;
 }
 
-/// The n-th place of `from` is replaced.
+/// Replaces the n-th occurrence of `from`.
 std::string replaced(std::string text, const std::string& from, const std::string& to, int n = 0) {
   std::size_t offset = text.find(from);
   while (n-- > 0 && offset != std::string::npos) offset = text.find(from, offset + 1);
@@ -74,7 +74,8 @@ TEST(WpmlInterpreter, RejectsChangedMissionSettings) {
   EXPECT_THAT(with_waylines(good().waylines_wpml.substr(height, stop - height),
                             "<wpml:globalRTHHeight>5.00"),
               names("highest waypoint"));
-  // Pilot 2 makes the waylines anew from the template: what is wrong there counts as well.
+  // Pilot 2 regenerates the waylines from the template. Errors in the template therefore count as
+  // well.
   EXPECT_THAT(with_template("<wpml:flyToWaylineMode>safely", "<wpml:flyToWaylineMode>pointToPoint"),
               Contains(StartsWith("template.kml has wpml:flyToWaylineMode")));
   EXPECT_THAT(with_template("<wpml:globalUseStraightLine>1", "<wpml:globalUseStraightLine>0"),
@@ -131,7 +132,8 @@ TEST(WpmlInterpreter, RejectsChangedTakeOffPoint) {
   EXPECT_THAT(reference(elsewhere, 0.0), Contains(HasSubstr("takeOffRefPoint 60.0 m from")));
 }
 
-// Up to the security height, level, and down to a first waypoint that is not above the pad.
+// The vehicle climbs to the security height, flies level, and descends to the first waypoint, which
+// is not above the pad.
 TEST(WpmlInterpreter, IncludesPathToFirstWaypoint) {
   FlightPlan moved = plan();
   moved.waypoints.front().position = {14, -16, 8};

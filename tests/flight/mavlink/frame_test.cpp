@@ -1,4 +1,4 @@
-// What a link carries, whoever sends it.
+// Frames with all kinds of valid and invalid bytes.
 #include "flight/mavlink/frame.h"
 
 #include <random>
@@ -32,7 +32,8 @@ void append(Bytes& bytes, const Bytes& more) {
   bytes.insert(bytes.end(), more.begin(), more.end());
 }
 
-// Published constants of the message set: our definitions of the messages are the right ones.
+// The CRC_EXTRA bytes equal the published constants of the message set, which confirms the message
+// definitions.
 TEST(Mavlink, ComputesPublishedCrcExtraBytes) {
   EXPECT_EQ(extra_byte<Heartbeat>(), 50);
   EXPECT_EQ(extra_byte<SystemStatus>(), 124);
@@ -51,14 +52,14 @@ TEST(Mavlink, ComputesPublishedCrcExtraBytes) {
   EXPECT_EQ(extra_byte<WireItem>(), 38);
 }
 
-// The check value of CRC-16/MCRF4XX in the catalogue of checksums.
+// Check value of CRC-16/MCRF4XX in the catalogue of CRC algorithms.
 TEST(Mavlink, ComputesChecksumCheckValue) {
   const Bytes digits{'1', '2', '3', '4', '5', '6', '7', '8', '9'};
   EXPECT_EQ(checksum(digits), 0x6F91);
 }
 
 TEST(Mavlink, TruncatesFramesAndDetectsEveryBitError) {
-  const Bytes frame = encode(CommandAnswer{}, somebody, 7);  // zeros alone: one of them stays
+  const Bytes frame = encode(CommandAnswer{}, somebody, 7);  // zeros are truncated, except one byte
   EXPECT_EQ(frame.size(), 10U + 1U + 2U);
   ASSERT_EQ(frames_in(frame).size(), 1U);
   EXPECT_EQ(decode<CommandAnswer>(frames_in(frame).front())->result, 0);
@@ -88,7 +89,7 @@ TEST(Mavlink, FindsFramesInByteStream) {
 TEST(Mavlink, SkipsUnknownMessages) {
   Bytes bytes = wire_form({4711, somebody, 0, Bytes(200, 0xFD)}, 0);
   Bytes marked = heartbeat(1);
-  marked[2] = 1;  // signed
+  marked[2] = 1;  // signed frame
   append(bytes, marked);
   append(bytes, heartbeat(3));
   const std::vector<Frame> frames = frames_in(bytes);
@@ -96,7 +97,8 @@ TEST(Mavlink, SkipsUnknownMessages) {
   EXPECT_EQ(decode<Heartbeat>(frames.front())->custom_mode, 3U);
 }
 
-// Whatever comes before, a frame is found once no more than one frame's bytes have followed it.
+// After random bytes, a frame is found once further bytes of at most the maximum frame size have
+// followed it.
 TEST(Mavlink, FindsFramesAfterRandomBytes) {
   std::mt19937_64 random(1);
   for (int i = 0; i < 2000; ++i) {

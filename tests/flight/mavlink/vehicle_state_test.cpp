@@ -51,7 +51,7 @@ TEST_F(HeardVehicle, IgnoresOtherVehicles) {
   EXPECT_EQ(state_.last_heard(), 1.0);
 }
 
-// Frames that come twice or late must not take a vehicle back into the mode that it was in before.
+// Duplicate or late frames must not restore the previous mode.
 TEST_F(HeardVehicle, IgnoresRepeatedAndLateFrames) {
   state_.hear(make_frame(heartbeat(9), 102), 2.0);
   state_.hear(make_frame(heartbeat(4), 101), 3.0);
@@ -108,7 +108,7 @@ TEST_F(HeardVehicle, KeepsTimeOfRepeatedPosition) {
 
 TEST_F(HeardVehicle, ComputesGimbalPitch) {
   GimbalAttitude message;
-  constexpr float half = 0.25F;  // pitched down by half a radian, turned by 2
+  constexpr float half = 0.25F;  // pitch -0.5 rad, yaw 2 rad
   const Eigen::Quaternionf turn = Eigen::AngleAxisf(2.0F, Eigen::Vector3f::UnitZ()) *
                                   Eigen::AngleAxisf(-2.0F * half, Eigen::Vector3f::UnitY());
   message.turn = {turn.w(), turn.x(), turn.y(), turn.z()};

@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The sample flight, read from the file of that vehicle's autopilot.
+/// The sample flight, read from the mission file for this vehicle.
 struct Sample {
   explicit Sample(const std::string& vehicle) : plan(sample_plan(vehicle_profile(vehicle))) {
     const FlightFacts facts = make_flight_facts(plan);
@@ -61,7 +61,7 @@ TEST_P(ExportedScript, VisitsAllWaypointsAndReturnsToPad) {
   }
 }
 
-// The plan's time is computed from the route, the script's from the file.
+// The plan's flight time is computed from the route, the script's from the file.
 TEST_P(ExportedScript, MatchesFlightTimeOfPlan) {
   const Sample sample(GetParam());
   EXPECT_NEAR(duration(sample.script) / flight_time(sample.plan), 1.0, 0.02);
@@ -80,7 +80,7 @@ TEST_P(ExportedScript, KeepsSpeedAndAccelerationLimits) {
   }
 }
 
-// Property: wherever a leg is given up, the vehicle comes to rest on it.
+// Property: if a leg is aborted anywhere, the vehicle stops on that leg.
 TEST_P(ExportedScript, BrakesToRestOnItsLeg) {
   const Sample sample(GetParam());
   for (const ScriptedLeg& leg : testing_support::not_empty(sample.script)) {
@@ -99,7 +99,7 @@ TEST_P(ExportedScript, BrakesToRestOnItsLeg) {
   }
 }
 
-// A file that flies at half the speed takes longer, by what its legs' own law says.
+// A file with half the speed takes longer, according to the motion law of its legs.
 TEST(FlightScript, UsesSpeedOfFile) {
   const FlightPlan plan = sample_plan(vehicle_profile("generic"));
   MavlinkMission file = sample_file(AutopilotType::px4);

@@ -30,7 +30,7 @@ TEST_F(VehicleModelFlight, UsesHoverPowerWhenHovering) {
 
 TEST_F(VehicleModelFlight, ReturnsToSetPointInSteadyWind) {
   fly({{1, 2, 30}}, 2.0, {8, 0, 0});
-  EXPECT_GT(model_.position().x(), 1.01);  // pushed away first
+  EXPECT_GT(model_.position().x(), 1.01);  // the wind first displaces the vehicle
   fly({{1, 2, 30}}, 60.0, {8, 0, 0});
   EXPECT_NEAR((model_.position() - Vector3d(1, 2, 30)).norm(), 0.0, 0.005);
 }
@@ -41,7 +41,7 @@ TEST_F(VehicleModelFlight, IsDisplacedByPositionError) {
   EXPECT_NEAR((model_.position() - (Vector3d(1, 2, 30) - error_)).norm(), 0.0, 0.005);
 }
 
-// A set point that moves steadily is followed without falling behind.
+// A set point with constant velocity is followed without lag.
 TEST_F(VehicleModelFlight, FollowsSteadySetPointWithoutLag) {
   SetPoint target{{1, 2, 30}, {3, 0, 0}};
   for (int i = 0; i < 1500; ++i) {

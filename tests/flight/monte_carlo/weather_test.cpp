@@ -28,8 +28,8 @@ TEST(RandomNumbers, AreNormalAndUniformBySeedAndStream) {
   EXPECT_NEAR(uniforms / count, 0.5, std::sqrt(1.0 / 12.0) * error);
 }
 
-// MIL-F-8785C at 20 ft, where W20 is measured: with h = 20, shape = 0.19346, sigma_w = 0.1 W20,
-// sigma_u = sigma_w / shape^0.4 = 0.1929 W20. A wind of 10 m/s from the west.
+// MIL-F-8785C at 20 ft, where W20 is measured: with h = 20, shape = 0.19346, sigma_w = 0.1 W20 and
+// sigma_u = sigma_w / shape^0.4 = 0.1929 W20. The wind is 10 m/s from the west.
 TEST(Weather, HasDrydenGustStrength) {
   geometry::RandomNumbers random(1, 1);
   Weather weather({10.0, 0.0}, random);
@@ -40,7 +40,8 @@ TEST(Weather, HasDrydenGustStrength) {
     sum += air;
     squares += air.cwiseAbs2();
   }
-  // Lengths of 44 and 6 m make 23,000 and 160,000 independent samples: 2 % is four errors.
+  // Length scales of 44 m and 6 m give 23,000 and 160,000 independent samples. 2% is four standard
+  // errors.
   EXPECT_NEAR(std::sqrt(squares.x() / count), 1.929, 0.04);
   EXPECT_NEAR(std::sqrt(squares.y() / count), 1.929, 0.04);
   EXPECT_NEAR(std::sqrt(squares.z() / count), 1.0, 0.02);
@@ -53,7 +54,7 @@ TEST(Weather, IsCalmWithoutWind) {
   for (int i = 0; i < 10; ++i) EXPECT_EQ(weather.next(0.1, 10.0, 3.0), Vector3d::Zero());
 }
 
-// Property: never beyond the bound, near it at times, and no jumps.
+// Property: the error never exceeds the bound, sometimes comes close to it, and does not jump.
 TEST(ReceiverError, StaysWithinBoundAndChangesSlowly) {
   geometry::RandomNumbers random(2, 1);
   ReceiverError receiver(0.3, random);

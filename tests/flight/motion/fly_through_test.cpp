@@ -1,4 +1,5 @@
-// Pictures without a stop: known answers, limits, steady cameras, and places through their places.
+// Fly-through capture: closed-form results, limits, steady cameras, and curves through the view
+// positions.
 #include "flight/motion/fly_through.h"
 
 #include <cmath>
@@ -20,7 +21,7 @@ KnownSpace open_air() { return KnownSpace(Obstacles{}); }
 
 constexpr PassRules easy{.speed = 100.0, .max_cut = 1.0, .exposure = 0.001, .period = 1.0};
 
-/// A square of 40 m round the origin, views in its corners that look at the middle.
+/// Square path of 40 m around the origin. The views at its corners look at the centre.
 struct Round {
   std::vector<Vector3d> points{{-30, -20, 10}, {-20, -20, 10}, {20, -20, 10},
                                {20, 20, 10},   {-20, 20, 10},  {-30, 20, 10}};
@@ -55,7 +56,7 @@ TEST(FlyThrough, PassesSquareWithoutStops) {
   for (std::size_t i = 0; i < 4; ++i) {
     const PassedView& view = fly_through->views[i];
     EXPECT_LT((view.position - round.points[i + 1]).norm(), 0.01) << "through its place";
-    // By symmetry the vehicle flies across the corner's bisector there.
+    // By symmetry, the vehicle crosses the bisector of the corner perpendicularly.
     const Vector3d velocity = state_at(fly_through->curve, view.moment).velocity;
     EXPECT_GT(velocity.norm(), 0.5);
     const Vector3d across = (round.points[i + 2] - round.points[i + 1]).normalized() +
@@ -64,8 +65,8 @@ TEST(FlyThrough, PassesSquareWithoutStops) {
   }
 }
 
-// Over 12.5 m, at 2 m/s: what is exposed for so long that the image would move by more than a pixel
-// at any higher speed.
+// The exposure lasts so long that the image would move by more than one pixel above 2 m/s. The
+// speed limit applies over 12.5 m.
 TEST(FlyThrough, KeepsSharpImageSpeed) {
   PassRules slow = easy;
   slow.speed = 2.0;
@@ -78,8 +79,8 @@ TEST(FlyThrough, KeepsSharpImageSpeed) {
   EXPECT_FALSE(pass(Round(), {.speed = 0.09, .max_cut = 1.0}, calm())) << "nothing flies so slowly";
 }
 
-// The camera turns by a quarter between corners, at no more than its rate, and stands still around
-// each picture.
+// The camera turns by 90° between corners within its rate limit, and stands still during each
+// capture.
 TEST(FlyThrough, TurnsCameraOnlyBetweenCaptures) {
   const Motion motion = calm();
   PassRules long_exposure = easy;
@@ -101,7 +102,8 @@ TEST(FlyThrough, TurnsCameraOnlyBetweenCaptures) {
   }
 }
 
-// Two views 2 m apart that look in opposite directions: half a second's flight does not do.
+// Two views 2 m apart look in opposite directions. Half a second of flight is too short for this
+// rotation.
 TEST(FlyThrough, StopsWhereCameraCannotTurnInTime) {
   const std::vector<Vector3d> points{{0, 0, 10}, {30, 0, 10}, {32, 0, 10}, {60, 0, 10}};
   const std::vector<FlyThroughView> views{{1, {0.0, 0.0}}, {2, {M_PI, 0.0}}};
@@ -129,7 +131,7 @@ TEST(FlyThrough, CapturesSeveralViewsAtOnePosition) {
   }
 }
 
-// A ball inside of the corner, its clearance touching both arms: the corner is not cut.
+// A ball inside the corner, whose clearance touches both legs: the corner is not cut.
 TEST(FlyThrough, KeepsClearanceFromObstacleInsideCorner) {
   Obstacles obstacles;
   obstacles.cloud.radius = 0.1;

@@ -21,7 +21,7 @@ geometry::Camera wide_camera() {
   return geometry::Camera(config);
 }
 
-// At the middle of the image: 0.2 m/s at 10 m and 0.03 rad/s turn the line of sight by 0.05 rad/s.
+// At the image centre, 0.2 m/s at 10 m and 0.03 rad/s rotate the line of sight by 0.05 rad/s.
 TEST(ImageMotionBounds, MatchClosedFormForNarrowCamera) {
   geometry::CameraConfig config;
   config.width = 1000;
@@ -36,7 +36,7 @@ TEST(ImageMotionBounds, MatchClosedFormForNarrowCamera) {
   EXPECT_EQ(bounds.distance, 10.0);
 }
 
-// Random small motions of that size move no pixel farther, and some nearly as far.
+// Random small motions of this magnitude stay within the bound, and some come close to it.
 TEST(ImageMotionBounds, BoundRandomMotionsAtAllCorners) {
   const geometry::Camera camera = wide_camera();
   const Vehicle vehicle{.sway_speed = 0.1, .sway_rate = 0.02};
@@ -59,11 +59,12 @@ TEST(ImageMotionBounds, BoundRandomMotionsAtAllCorners) {
                          focal.y() * (after.y() / after.z() - y));
     largest = std::max(largest, moved.norm());
   }
-  EXPECT_LE(largest, bound * (1.0 + 1e-3));  // to first order
+  EXPECT_LE(largest, bound * (1.0 + 1e-3));  // first-order approximation
   EXPECT_GE(largest, 0.6 * bound);
 }
 
-// At that speed the image moves by a pixel while it is exposed, or from the first row to the last.
+// At this speed the image moves by one pixel during the exposure, or between the first and the last
+// row.
 TEST(ImageMotionBounds, AreOnePixelAtSharpSpeed) {
   const geometry::Camera camera = wide_camera();
   Vehicle vehicle{.sway_speed = 0.1, .sway_rate = 0.002};

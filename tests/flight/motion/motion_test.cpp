@@ -16,14 +16,15 @@ namespace {
 using Eigen::Vector3d;
 using testing::HasSubstr;
 
-/// Brute-force twin: integrates the fastest jerk-limited motion from rest by bang-bang jerk on a
-/// grid: accelerate as hard as allowed, mirror it to brake. Only the distance covered is compared.
+/// Integrates the fastest jerk-limited motion from rest on a time grid, by brute force. It
+/// accelerates with bang-bang jerk and brakes symmetrically. Only the distance is compared.
 double distance_covered(double time, double speed, double acceleration, double jerk) {
-  // Forward half: raise the acceleration, hold it, lower it so that it ends at zero with speed v.
+  // First half: raise, hold and lower the acceleration so that it ends at zero with speed v.
   const double dt = time / 400000;
   double a = 0, v = 0, half = 0;
   for (double t = 0; t < time / 2; t += dt) {
-    // Lowering from a takes a / j and gains a^2 / (2 j) of speed; it must also end at half time.
+    // Lowering the acceleration from a takes a / j and adds a^2 / (2 j) to the speed. It must also
+    // end at half time.
     const bool must_lower = v + a * a / (2 * jerk) >= speed || t + a / jerk >= time / 2;
     a = must_lower ? std::max(0.0, a - jerk * dt) : std::min(acceleration, a + jerk * dt);
     v += a * dt;
@@ -36,7 +37,8 @@ TEST(RestToRest, CoversDistanceInAllRegimes) {
   for (const double distance : {0.01, 0.3, 2.0, 5.0, 20.0, 300.0}) {
     for (const double speed : {1.0, 4.0, 15.0}) {
       const double time = rest_to_rest_time(distance, speed, 2.0, 4.0);
-      // The grid overshoots the speed by one step's acceleration, 2 time / 400,000: at most 0.15 %.
+      // The grid overshoots the speed by the acceleration of one step, 2 time / 400,000: at most
+      // 0.15%.
       EXPECT_NEAR(distance_covered(time, speed, 2.0, 4.0), distance, 1.5e-3 * distance)
           << distance << " m at " << speed << " m/s";
     }
@@ -55,14 +57,14 @@ TEST(RestToRest, IsMonotonicAndContinuousAcrossRegimes) {
 }
 
 TEST(Turn, IsTriangularThenTrapezoidal) {
-  EXPECT_DOUBLE_EQ(turn_time(0.5, 1.0, 2.0), 1.0);  // reaches 1 rad/s at half way
+  EXPECT_DOUBLE_EQ(turn_time(0.5, 1.0, 2.0), 1.0);  // reaches 1 rad/s halfway
   EXPECT_DOUBLE_EQ(turn_time(-3.0, 1.0, 2.0), 3.5);
   EXPECT_DOUBLE_EQ(turn_time(0.125, 1.0, 2.0), 0.5);
 }
 
 TEST(Motion, HasSeparateLimitsForVerticalLegs) {
   Vehicle vehicle;
-  vehicle.mode.max_descent = 2.0;  // up 3 m/s
+  vehicle.mode.max_descent = 2.0;  // climb at 3 m/s
   const Motion motion(vehicle, {.cruise_speed = 8.0});
   EXPECT_DOUBLE_EQ(motion.leg_speed({1, 0, 0}), 8.0);
   EXPECT_DOUBLE_EQ(motion.leg_speed({0, 0, 1}), 3.0);
@@ -71,8 +73,8 @@ TEST(Motion, HasSeparateLimitsForVerticalLegs) {
   EXPECT_GT(motion.leg_time({0, 0, -30}), motion.leg_time({0, 0, 30}));
 }
 
-// Straight up the vertical acceleration, level the horizontal, and on a slope as much of both as
-// the one that is used up first allows.
+// Vertical motion uses the vertical limit and level motion the horizontal limit. On a slope, the
+// limit that is reached first determines the acceleration.
 TEST(Motion, LimitsAccelerationBySlowerAxis) {
   Vehicle vehicle;
   vehicle.mode.acceleration = 2.5, vehicle.mode.vertical_acceleration = 1.0;
@@ -88,7 +90,7 @@ TEST(Motion, LimitsAccelerationBySlowerAxis) {
   }
 }
 
-// The trajectories that are written are the seven phases, which must end before the autopilot does.
+// Written trajectories have seven phases. They must end before the autopilot's motion does.
 TEST(Motion, IsNotFasterThanSevenPhases) {
   for (const Vehicle& vehicle : testing_support::not_empty(vehicle_profiles())) {
     const Motion motion(vehicle, {});
@@ -114,7 +116,7 @@ TEST(Motion, LandsInTwoStages) {
   EXPECT_DOUBLE_EQ(motion.landing_time(40.0), 20.0 + 20.0 + 2.0);
 }
 
-// Aiming takes as long as the slowest of leg, heading and gimbal; DJI's gimbal starts on arrival.
+// Aiming takes as long as the slowest of leg, heading and gimbal. DJI's gimbal starts on arrival.
 TEST(Motion, AimsEnRoute) {
   Vehicle vehicle;
   vehicle.mode.yaw_rate = 1.0, vehicle.mode.yaw_acceleration = 2.0, vehicle.gimbal_rate = 0.5;
@@ -127,14 +129,14 @@ TEST(Motion, AimsEnRoute) {
 }
 
 TEST(Motion, LimitsGroundSpeedInHeadwind) {
-  Vehicle vehicle;  // 10 m/s through the air
+  Vehicle vehicle;  // airspeed 10 m/s
   const Motion motion(vehicle, {.wind = {0, -6}, .cruise_speed = 10.0});
-  EXPECT_NEAR(motion.leg_speed({0, 1, 0}), 4.0, 1e-12);    // into it
-  EXPECT_NEAR(motion.leg_speed({1, 0, 0}), 8.0, 1e-12);    // across: 6-8-10
-  EXPECT_NEAR(motion.leg_speed({0, -1, 0}), 10.0, 1e-12);  // with it, as fast as wanted
+  EXPECT_NEAR(motion.leg_speed({0, 1, 0}), 4.0, 1e-12);    // headwind
+  EXPECT_NEAR(motion.leg_speed({1, 0, 0}), 8.0, 1e-12);    // crosswind: 6-8-10
+  EXPECT_NEAR(motion.leg_speed({0, -1, 0}), 10.0, 1e-12);  // tailwind, limited by the cruise speed
 }
 
-// The model's calibration: a full battery, to the last drop, hovers as long as the data sheet says.
+// Calibration of the model: hovering until the battery is empty takes as long as in the data sheet.
 TEST(Motion, MatchesDataSheetEndurance) {
   for (const Vehicle& vehicle : testing_support::not_empty(vehicle_profiles())) {
     const Motion motion(vehicle, {.reserve = 0.0});
@@ -144,8 +146,8 @@ TEST(Motion, MatchesDataSheetEndurance) {
   }
 }
 
-// Momentum theory: power has its least at some speed, a little below hover, and rises steeply
-// after.
+// Momentum theory: the power has its minimum slightly below hover power at a moderate speed, and
+// rises steeply above it.
 TEST(Motion, HasMinPowerAtModerateForwardSpeed) {
   for (const Vehicle& vehicle : testing_support::not_empty(vehicle_profiles())) {
     const Motion motion(vehicle, {});

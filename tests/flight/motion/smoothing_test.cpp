@@ -1,5 +1,4 @@
-// Curves instead of stops: known answers, limits, and no accepted curve that exact distances
-// refuse.
+// Smoothed curves: closed-form results, limits, and no accepted curve that exact distances reject.
 #include "flight/motion/smoothing.h"
 
 #include <cmath>
@@ -27,7 +26,7 @@ double stopping_time(const std::vector<Vector3d>& points, const Motion& motion) 
   return sum;
 }
 
-/// Open air with one ball of 10 cm at each place.
+/// Returns free space with one ball of radius 0.1 m at each position.
 KnownSpace air_with(const std::vector<Vector3d>& balls) {
   Obstacles obstacles;
   obstacles.cloud.radius = 0.1;
@@ -35,7 +34,7 @@ KnownSpace air_with(const std::vector<Vector3d>& balls) {
   return KnownSpace(obstacles);
 }
 
-// Dense sampling of what the control points have proven; 1e-6 is for rounding.
+// Checks by dense sampling what the control points verify. 1e-6 allows for rounding.
 void expect_flyable(const Curve& curve, const Motion& motion) {
   const Vehicle& vehicle = motion.vehicle();
   constexpr double dt = 1e-3;
@@ -47,11 +46,11 @@ void expect_flyable(const Curve& curve, const Motion& motion) {
     ASSERT_LE(speed, top * (1 + 1e-6)) << t;
     ASSERT_LE(now.acceleration.head<2>().norm(), vehicle.mode.acceleration * (1 + 1e-6)) << t;
     ASSERT_LE(std::abs(now.acceleration.z()), vehicle.mode.vertical_acceleration * (1 + 1e-6)) << t;
-    // A difference of accelerations is the mean jerk between them, whatever joints there are: also
-    // proves that the acceleration does not jump.
+    // The difference of accelerations is the mean jerk between them. A bounded mean jerk also means
+    // that the acceleration is continuous.
     ASSERT_LE((next.acceleration - now.acceleration).norm(), dt * vehicle.mode.jerk * (1 + 1e-6))
         << t;
-    // Position and velocity follow from it, to the second order of the step.
+    // Position and velocity are consistent with the acceleration to the second order of the step.
     ASSERT_LE((next.velocity - now.velocity - dt * now.acceleration).norm(),
               dt * dt * vehicle.mode.jerk);
     ASSERT_LE((next.position - now.position - dt * now.velocity).norm(),
@@ -69,7 +68,7 @@ void expect_rest_at_ends(const Curve& curve, const Vector3d& from, const Vector3
 
 // ---- curves ----------------------------------------------------------------------------------
 
-// The one quintic between the ends of a motion of constant jerk is that motion.
+// The quintic between the end states of a motion with constant jerk equals that motion.
 TEST(Curve, MatchesCubicBetweenItsStates) {
   const Vector3d jerk(0.5, -1, 2);
   const auto cubic = [&](double t) -> CurveState {
@@ -84,8 +83,8 @@ TEST(Curve, MatchesCubicBetweenItsStates) {
   }
 }
 
-// A minimum-jerk motion over 10 m in T seconds peaks at 15/8 of its mean speed and at
-// 10 / sqrt(3) L / T^2 of acceleration, 60 L / T^3 of jerk.
+// Peaks of a minimum-jerk motion over L = 10 m in T seconds: speed 15/8 of the mean, acceleration
+// 10 / sqrt(3) L / T^2, jerk 60 L / T^3.
 TEST(Curve, NeedsSlowdownOfMinimumJerkMotion) {
   const Motion motion = calm();
   const Curve curve{segment_between({Vector3d::Zero()}, {Vector3d(10, 0, 0)}, 1.0)};
@@ -96,13 +95,13 @@ TEST(Curve, NeedsSlowdownOfMinimumJerkMotion) {
   const double min = std::max({by_speed, by_acceleration, by_jerk});
   const double bound = needed_slowdown(curve, motion);
   EXPECT_GE(bound, min * (1 - 1e-12));
-  EXPECT_LE(bound, 1.05 * min);  // what two halvings promise
+  EXPECT_LE(bound, 1.05 * min);  // accuracy of the bound after two subdivisions
   EXPECT_LE(needed_slowdown(slowed(curve, bound), motion), 1.0 + 1e-12);
 }
 
 TEST(Curve, HasLengthOfLineAndOfArc) {
   EXPECT_NEAR(length({segment_between({Vector3d::Zero()}, {Vector3d(3, 4, 12)}, 5.0)}), 13.0, 1e-6);
-  // A quarter of a circle of radius 4 at 1 m/s is nearly a quintic between its end states.
+  // A quarter circle of radius 4 m at 1 m/s is approximately a quintic between its end states.
   const double quarter = 2.0 * M_PI;
   const Curve arc{segment_between({Vector3d(4, 0, 0), Vector3d(0, 1, 0), Vector3d(-0.25, 0, 0)},
                                   {Vector3d(0, 4, 0), Vector3d(-1, 0, 0), Vector3d(0, -0.25, 0)},
@@ -110,7 +109,8 @@ TEST(Curve, HasLengthOfLineAndOfArc) {
   EXPECT_NEAR(length(arc), quarter, 2e-3);
 }
 
-// A bend whose hull is 1 m deep passes an obstacle inside of it: only halving proves that it does.
+// The hull of the bend is 1 m deep, and an obstacle is inside it. Only subdivision can verify the
+// curve.
 TEST(Curve, IsVerifiedBySubdividingItsHull) {
   const Curve bend = blend_corners(right_angle, air_with({}), 1.0, calm()).curve;
   double nearest = 1e9;
@@ -133,13 +133,13 @@ TEST(Blend, IsShorterAndFasterInsideRightAngle) {
   EXPECT_LT(leg->length, 40.0);
   EXPECT_GT(leg->length, std::sqrt(2.0) * 20.0);
   EXPECT_LT(leg->duration, stopping_time(right_angle, motion) - 1.0);
-  // Not faster than flying its length at full speed all along.
+  // Not faster than its length at full speed.
   EXPECT_GE(leg->duration, leg->length / motion.leg_speed(Vector3d::UnitX()));
   expect_flyable(leg->curve, motion);
   expect_rest_at_ends(leg->curve, right_angle.front(), right_angle.back());
   for (double t = 0.0; t < leg->duration; t += 0.01) {
     const Vector3d p = state_at(leg->curve, t).position;
-    // In the triangle of the corner: within the arms, and behind the line between its ends.
+    // Inside the triangle of the corner: between the legs and beyond the line between their ends.
     EXPECT_LE(p.x(), 20.0 + 1e-9);
     EXPECT_GE(p.y(), -1e-9);
     EXPECT_GE(p.x(), p.y() - 1e-9);
@@ -155,7 +155,8 @@ TEST(Blend, AvoidsObstacleInCornerOrStops) {
   };
   const double open = time({});
   const double tight = time({{18.5, 1.5, 10}});
-  // Just 1 m and the ball's radius from both arms at 5 cm from the corner: no blend beyond that.
+  // The obstacle is 1 m plus its radius away from both legs, 5 cm from the corner, which limits the
+  // blend.
   const double blocked = time({{20 - 1.101, 1.101, 10}, {20 - 1.101, 0.05, 10 + 1.2}});
   EXPECT_LT(open, blocked - 0.1);
   EXPECT_LE(tight, blocked);
@@ -186,7 +187,7 @@ TEST(Smooth, IsFasterThanBlend) {
   const auto curve = smooth(zigzag, air_with({}), 1.0, 2.0, motion, FlightStyle::smooth);
   ASSERT_TRUE(blend && curve);
   EXPECT_LT(curve->duration, 0.95 * blend->duration);
-  // No motion within the limits is faster than straight on.
+  // No motion within the limits is faster than the straight line.
   const Vector3d displacement = zigzag.back() - zigzag.front(),
                  direction = displacement.normalized();
   EXPECT_GE(curve->duration,
@@ -222,8 +223,8 @@ TEST(Smooth, ReturnsNoCurveWithoutCorners) {
   EXPECT_FALSE(smooth({}, air, 1.0, 2.0, motion, FlightStyle::blend));
 }
 
-// Random scenes: what is accepted keeps its clearance at places so dense (1 cm) that nothing nearer
-// than the least clearance stated, less half of that, could pass between them.
+// Random scenes: accepted curves keep their clearance at samples every 1 cm. With this spacing,
+// nothing closer than the stated minimum clearance minus half a step could be missed.
 TEST(Smooth, KeepsClearanceAtDenseSamplesOfRandomScenes) {
   std::mt19937_64 random(7);
   const Motion motion = calm();

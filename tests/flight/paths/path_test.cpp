@@ -29,8 +29,8 @@ void expect_verified(const FreeSpace& space, const Path& path, double clearance)
   }
 }
 
-/// Length of the shortest way past a corner of the plane at distance `radius` from it, going round
-/// it counter-clockwise: a tangent, an arc, a tangent.
+/// Returns the length of the shortest path around a corner in the plane at distance `radius`,
+/// counter-clockwise: tangent, arc, tangent.
 double round_corner(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
                     const Eigen::Vector2d& corner, double radius) {
   const Eigen::Vector2d a = from - corner, b = to - corner;
@@ -50,8 +50,8 @@ TEST(Path, IsStraightLineWhenFree) {
   EXPECT_EQ(path.expansions, 0U);
 }
 
-// A high box, from one face to the neighbouring one: tangent, arc of the clearance round the edge,
-// tangent. Within 2 % of it (the bar).
+// From one face of a tall box to the adjacent one: tangent, arc around the edge at the clearance,
+// tangent. Requirement: within 2% of this length.
 TEST(Path, IsWithinTwoPercentOfShortestAroundOneEdge) {
   const KnownSpace space = make_space(scenes::box({0, 0, -300}, {40, 40, 300}));
   for (const double clearance : {0.5, 2.0, 5.0}) {
@@ -65,13 +65,13 @@ TEST(Path, IsWithinTwoPercentOfShortestAroundOneEdge) {
   }
 }
 
-// Symmetric to the far face: two edges to go round.
+// To the opposite face, by symmetry around two edges.
 TEST(Path, IsWithinTwoPercentOfShortestAroundTwoEdges) {
   const KnownSpace space = make_space(scenes::box({0, 0, -300}, {40, 40, 300}));
   const double clearance = 2.0;
   PathFinder finder(space, clearance);
   const Path path = finder.find({20, -10, 0}, {20, 50, 0});
-  // Half way it passes the middle of the side at the clearance, heading along it.
+  // Halfway, the path passes the middle of the side at the clearance, parallel to it.
   const double shortest = 2.0 * round_corner({20, -10}, {42, 20}, {40, 0}, clearance);
   ASSERT_EQ(path.status, PathStatus::found);
   EXPECT_GE(path.length, shortest - 1e-3);
@@ -79,8 +79,8 @@ TEST(Path, IsWithinTwoPercentOfShortestAroundTwoEdges) {
   expect_verified(space, path, clearance);
 }
 
-// A wall too large to go round, 1 m thick, with a window 6 m wide, flown through at 2 m. The path
-// is in a plane of symmetry and bends round both edges of the window's left side.
+// A wall 1 m thick, too large to fly around, with a window 6 m wide. Clearance: 2 m. The path is in
+// a plane of symmetry and bends around both edges of the left side of the window.
 TEST(Path, FindsWindowInWall) {
   geometry::Mesh wall = scenes::box({-200, 0, -200}, {0, 1, 200});
   geometry::append(wall, scenes::box({6, 0, -200}, {200, 1, 200}));
@@ -97,7 +97,7 @@ TEST(Path, FindsWindowInWall) {
   EXPECT_LE(path.length, 1.02 * shortest);
 }
 
-// A corridor with a right angle, 5 m wide and closed above and below, flown at 2 m.
+// Corridor with a right angle, 5 m wide and closed above and below. Clearance: 2 m.
 TEST(Path, FollowsCorridorWithRightAngle) {
   geometry::Mesh walls = scenes::box({0, 5, 0}, {25, 30, 5});    // inner block
   geometry::append(walls, scenes::box({0, -1, 0}, {31, 0, 5}));  // outer walls

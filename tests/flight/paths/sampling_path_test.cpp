@@ -13,8 +13,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Two engines that share no search: their paths are both proven, and as long to within 5 %, what
-// sampling with this effort comes to.
+// Compares two planners with independent search methods. Both paths are verified. Their lengths
+// agree to 5%, the accuracy of sampling with this effort.
 void expect_agreement(const Obstacles& obstacles, const Vector3d& from, const Vector3d& to,
                       double clearance, const SamplingOptions& options) {
   const KnownSpace space(obstacles);
@@ -44,8 +44,8 @@ TEST(SamplingPath, MatchesGridPathWithAitStar) {
                    {.planner = SamplingPlanner::ait_star, .max_checks = 1500});
 }
 
-// From one side of the window to the same side behind the wall: the straight line is in the way of
-// the wall, so the hole must be found, and by every seed, not only a lucky one.
+// From a position next to the window to one on the other side of the wall. The wall blocks the
+// straight line, so each seed must find the window.
 TEST(SamplingPath, FindsWindowInWallWithEverySeed) {
   const KnownSpace space(scenes::wall_with_window());
   const Vector3d from(-8, -6, 20), to(-8, 7, 20);

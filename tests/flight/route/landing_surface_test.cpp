@@ -21,7 +21,7 @@ using testing_support::thrown_message;
 
 const Vector3d pad(12.0, -7.0, 3.0);
 
-/// A plane through the pad, `rise` above it, that falls to the south-west.
+/// Plane `rise` above the pad, which descends to the south-west.
 struct Plane {
   double slope_deg = 0.0;
   double rise = 0.0;
@@ -51,7 +51,7 @@ TEST(LandingSurface, ComputesSlopeAndRiseOfPlane) {
   }
 }
 
-// A chequered ground of steps of 2 h is h off its plane everywhere.
+// A chequered pattern of steps with height 2 h deviates by h from its plane everywhere.
 TEST(LandingSurface, ComputesUnevennessOfSteps) {
   std::vector<Vector3d> positions;
   for (int x = -4; x < 4; ++x) {
@@ -99,7 +99,7 @@ TEST(LandingSurface, IsUnsuitableWhenSteepUnevenOrOffset) {
               HasSubstr("the landing point at (12.00, -7.00, 3.00) has ground"));
 }
 
-// Noise of 3 cm on a ramp, and what stands beside the pad or hangs over it.
+// Noise of 3 cm on a ramp, with obstacles next to the pad and above it.
 TEST(PadScan, MeasuresSlopeUnderNoiseAndIgnoresOtherPoints) {
   const Plane plane{12.0, 0.1};
   std::mt19937_64 random(2);
@@ -121,7 +121,8 @@ TEST(PadScan, MeasuresSlopeUnderNoiseAndIgnoresOtherPoints) {
   const auto ground = scan.ground();
   ASSERT_TRUE(ground);
   EXPECT_EQ(ground->source, GroundSource::measured);
-  // 200 points in each 1 m^2: the slope's standard error is 0.03 / (0.3 sqrt(600)), 0.2 degrees.
+  // With 200 points per m^2, the standard error of the slope is 0.03 / (0.3 sqrt(600)), 0.2
+  // degrees.
   EXPECT_NEAR(ground->slope, 12.0 * radians_per_degree, 1.0 * radians_per_degree);
   EXPECT_NEAR(ground->rise, 0.1, 0.01);
 }

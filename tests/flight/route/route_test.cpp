@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 using geometry::look_at;
 using testing::HasSubstr;
 
-/// A building of 20 x 20 x 15 m on flat ground.
+/// Returns a building of 20 x 20 x 15 m on flat ground.
 Obstacles site() {
   Obstacles obstacles;
   obstacles.mesh = scenes::box({-10, -10, 0}, {10, 10, 15});
@@ -28,7 +28,7 @@ Obstacles site() {
   return obstacles;
 }
 
-/// Views on a ring around the building, in an order that goes round it.
+/// Returns views on a ring around the building, ordered around it.
 std::vector<CapturePoint> ring(int count, double distance, double height) {
   std::vector<CapturePoint> capture_points;
   for (int i = 0; i < count; ++i) {
@@ -74,8 +74,8 @@ Obstacles open_ground() {
   return obstacles;
 }
 
-/// Open ground whose searches find every way free, though no leg across a gate can be proven: the
-/// half plane x = 0, y > 0.
+/// Open terrain in which the path search finds all paths, but no leg through a gate can be
+/// verified. The gate is the half plane x = 0, y > 0.
 class UnprovableGate : public KnownSpace {
  public:
   UnprovableGate() : KnownSpace(open_ground()) {}
@@ -96,8 +96,9 @@ class UnprovableGate : public KnownSpace {
 
 TEST(Route, OmitsCapturePointsWithoutVerifiedPath) {
   const UnprovableGate space;
-  // From the pad at (-30, -30) the ways to the first two pass below the gate, to the third through
-  // it; so does the straight line from the first to the second.
+  // From the pad at (-30, -30), the paths to the first two views pass below the gate and the path
+  // to the third leads through it. The straight line from the first to the second also leads
+  // through it.
   const std::vector<CapturePoint> capture_points{{look_at({-20, 10, 20}, {0, 0, 20}), 2.0, 1, 0},
                                                  {look_at({20, 10, 20}, {0, 0, 20}), 2.0, 1, 1},
                                                  {look_at({5, 60, 20}, {0, 0, 20}), 2.0, 1, 2}};
@@ -115,8 +116,8 @@ TEST(Route, OmitsCapturePointsWithoutVerifiedPath) {
   }
 }
 
-// Corner stations make straight legs cut through the building: the complaint that views stand off
-// and legs do not.
+// Straight legs between corner views would cross the building, although the views themselves keep
+// the clearance.
 TEST(Route, RoutesLegsAroundObstacles) {
   std::vector<CapturePoint> capture_points{{look_at({0, -14, 8}, {0, 0, 8})},
                                            {look_at({0, 14, 8}, {0, 0, 8})}};
@@ -126,7 +127,7 @@ TEST(Route, RoutesLegsAroundObstacles) {
   EXPECT_GE(route.legs[0].clearance, 2.0);
 }
 
-// The grid is made too coarse for the window, which leaves it to the second engine.
+// The grid is too coarse for the window, so the sampling planner must find it.
 TEST(Route, FindsNarrowPassagesBySampling) {
   const Obstacles obstacles = scenes::wall_with_window();
   RouteOptions how = options();
@@ -144,7 +145,8 @@ TEST(Route, FindsNarrowPassagesBySampling) {
               testing::IsEmpty());
 }
 
-/// Before the wall and behind it, and how a survey came there through the window.
+/// Returns capture points in front of the wall and behind it, with the survey's approach path
+/// through the window.
 std::vector<CapturePoint> window_stations() {
   const Vector3d home(-8, -6, 20), before(-8, -7, 22), in_window(0, 0, 20), behind(-8, 7, 20);
   std::vector<CapturePoint> capture_points{{look_at(before, {-8, -20, 22})},
@@ -156,7 +158,8 @@ std::vector<CapturePoint> window_stations() {
   return capture_points;
 }
 
-// In the survey's order legs are those of the survey; in another one they are the shortest found.
+// In the order of the survey, legs are those of the survey. In another order, they are the shortest
+// paths found.
 TEST(Route, KeepsSurveyPathsInSurveyOrder) {
   const KnownSpace space(scenes::wall_with_window());
   RouteOptions how = options();
@@ -185,7 +188,7 @@ TEST(Route, FindsOtherPathWhenApproachPathIsBlocked) {
   EXPECT_GT(route.sorties[0].out.points.size(), 2U);
 }
 
-// A tree over a rally point, too low for the returns that come from above and too high to land in.
+// A tree above a rally point, too low for the level return and too high for a landing.
 TEST(Route, RejectsRallyPointWithObstacleAbove) {
   Obstacles obstacles = site();
   RouteOptions how = options();
@@ -200,7 +203,7 @@ TEST(Route, RejectsRallyPointWithObstacleAbove) {
               testing::ThrowsMessage<Error>(HasSubstr("the climb from the rally point")));
 }
 
-// A window that leaves 5 mm beside the clearance: neither engine finds through, the survey did.
+// A window with 5 mm more than the clearance: neither planner finds a path, but the survey did.
 TEST(Route, UsesSurveyPathWhenPathFindersFail) {
   Obstacles obstacles = scenes::wall_with_window();
   for (const double side : {-1.0, 1.0}) {
@@ -226,7 +229,7 @@ TEST(Route, UsesSurveyPathWhenPathFindersFail) {
               testing::IsEmpty());
 }
 
-// What the survey's way came through is not proven by that: it is proven anew.
+// The survey's path is not verified by having been flown; it is verified again.
 TEST(Route, ReplacesSurveyPathThatIsNotFree) {
   const KnownSpace space(scenes::wall_with_window());
   RouteOptions how = options();
@@ -243,7 +246,7 @@ TEST(Route, ReplacesSurveyPathThatIsNotFree) {
   EXPECT_GT(route.legs[0].points.size(), 2U);
 }
 
-// Sorties are split for stops; a curve must fit into what they have set aside for its leg.
+// Sorties are split for stop-and-capture. A curve must fit into the energy reserved for its leg.
 TEST(Route, UsesLessTimeAndEnergyForCurvesThanForStops) {
   const std::vector<CapturePoint> capture_points{{look_at({0, -14, 8}, {0, 0, 8})},
                                                  {look_at({0, 14, 8}, {0, 0, 8})}};
@@ -261,7 +264,7 @@ TEST(Route, UsesLessTimeAndEnergyForCurvesThanForStops) {
   }
 }
 
-// The sorties' times are those of the files: stops in corners included.
+// The durations of sorties equal those in the exported files, including stops at corners.
 TEST(Route, HasSortieDurationsOfFlightPlans) {
   const Route route = plan(ring(8, 16, 8), site());
   ASSERT_EQ(route.sorties.size(), 1U);
@@ -272,10 +275,10 @@ TEST(Route, HasSortieDurationsOfFlightPlans) {
 TEST(Route, ReportsUnreachableViewsAndVisitsTheRest) {
   std::vector<CapturePoint> capture_points = ring(6, 16, 8);
   capture_points.insert(capture_points.begin() + 2,
-                        {look_at({0, 0, 5}, {1, 0, 5}), 2, 1, 77});  // inside
+                        {look_at({0, 0, 5}, {1, 0, 5}), 2, 1, 77});  // inside the building
   capture_points.insert(capture_points.begin() + 4,
-                        {look_at({11, 0, 5}, {0, 0, 5}), 2, 1, 78});       // too near
-  capture_points.push_back({look_at({20, 0, 5}, {20, 0, 50}), 2, 1, 79});  // straight up
+                        {look_at({11, 0, 5}, {0, 0, 5}), 2, 1, 78});       // too close
+  capture_points.push_back({look_at({20, 0, 5}, {20, 0, 50}), 2, 1, 79});  // looks straight up
   const Route route = plan(capture_points, site());
   EXPECT_EQ(route.capture_points.size(), 6U);
   ASSERT_EQ(route.unreached.size(), 3U);
@@ -284,7 +287,8 @@ TEST(Route, ReportsUnreachableViewsAndVisitsTheRest) {
   EXPECT_THAT(route.unreached[2].reason, HasSubstr("gimbal"));
 }
 
-// The bar: a small battery, no sortie below its reserve, at most 15 % over the printed bound.
+// Requirement: with a small battery, no sorties below the reserve, and at most 15% above the
+// printed bound.
 TEST(Route, SplitsIntoSortiesThatKeepReserve) {
   Vehicle small;
   small.battery_wh = 12.0, small.endurance_min = 3.6;
@@ -306,7 +310,7 @@ TEST(Route, SplitsIntoSortiesThatKeepReserve) {
 
 TEST(Route, SplitsAtWaypointLimit) {
   Vehicle old;
-  old.max_waypoints = 94;  // ten stations
+  old.max_waypoints = 94;  // room for ten capture points
   const Route route = plan(ring(24, 18, 8), site(), options(), old);
   EXPECT_EQ(route.sorties.size(), 3U);
 }
@@ -349,7 +353,7 @@ TEST(Route, RejectsBlockedTakeOffPoint) {
   }
 }
 
-// Above the pad's own ground the climb is certified as legs are, in what is known of the air.
+// The climb above the pad is verified like a leg, in all known space.
 TEST(Route, RejectsTakeOffClimbNearMeasuredTree) {
   const auto plan_at_distance = [](double distance) {
     Obstacles with_tree = site();
@@ -377,7 +381,7 @@ TEST(Route, RejectsInvalidOptions) {
   nowhere.takeoff.x() = std::nan("");
   EXPECT_THAT(testing_support::thrown_message([&] { plan({}, site(), nowhere); }),
               testing::HasSubstr("the take-off point is not a finite position"));
-  EXPECT_TRUE(plan({}, site()).sorties.empty());  // nothing to do is fine
+  EXPECT_TRUE(plan({}, site()).sorties.empty());  // an empty plan is valid
 }
 
 TEST(CheckRoute, ReportsLegPositionAndDistance) {

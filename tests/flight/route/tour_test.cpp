@@ -50,7 +50,8 @@ TEST(Tour, VisitsEveryPositionOnceAtStatedCost) {
   EXPECT_EQ(compute_tour(where).order, tour.order);
 }
 
-// Against all 40,320 orders of nine places: the bound is one, and the tour is close to the best.
+// Compares with all 40,320 orders of nine positions: the bound is valid, and the tour is close to
+// the optimum.
 TEST(Tour, IsNearOptimumOfSmallCasesAndKeepsBound) {
   double worst = 1.0;
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
@@ -64,7 +65,7 @@ TEST(Tour, IsNearOptimumOfSmallCasesAndKeepsBound) {
     const Tour tour = compute_tour(where);
     EXPECT_GE(tour.cost, best - 1e-9);
     EXPECT_LE(tour.lower_bound, best + 1e-9);
-    EXPECT_GT(tour.lower_bound, 0.95 * best);  // Held-Karp's bound is within 1 % as a rule
+    EXPECT_GT(tour.lower_bound, 0.95 * best);  // the Held-Karp bound is usually within 1%
     worst = std::max(worst, tour.cost / best);
   }
   EXPECT_LE(worst, 1.05);
@@ -72,7 +73,7 @@ TEST(Tour, IsNearOptimumOfSmallCasesAndKeepsBound) {
 
 TEST(Tour, HasSmallGapToBoundForManyPositions) {
   const Tour tour = compute_tour(positions(5, 150));
-  EXPECT_LE(tour.cost, 1.08 * tour.lower_bound);  // 2-opt with Or-opt is 5 % above the optimum
+  EXPECT_LE(tour.cost, 1.08 * tour.lower_bound);  // 2-opt with Or-opt is about 5% above the optimum
 }
 
 TEST(Tour, HandlesOneToThreePositions) {
@@ -81,7 +82,8 @@ TEST(Tour, HandlesOneToThreePositions) {
   EXPECT_EQ(compute_tour(positions(1, 3)).order.size(), 2U);
 }
 
-/// The least time of stations first to last in one sortie; infinite if no pad has the energy.
+/// Returns the minimum time for the capture points `first` to `last` in one sortie. Infinite if the
+/// energy is insufficient from all pads.
 double best_sortie(const SplitProblem& problem, std::size_t first, std::size_t last) {
   double best = std::numeric_limits<double>::infinity();
   for (const SplitProblem::Pad& pad : problem.pads) {
@@ -97,7 +99,7 @@ double best_sortie(const SplitProblem& problem, std::size_t first, std::size_t l
   return best;
 }
 
-/// Exhaustive twin of the split: every subset of the gaps between stations.
+/// Tries all subsets of the gaps between capture points, as an exhaustive reference for the split.
 double best_by_trying_all(const SplitProblem& problem) {
   const std::size_t count = problem.capture_point.size();
   if (count == 0) return 0.0;

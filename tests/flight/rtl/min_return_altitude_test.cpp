@@ -22,7 +22,7 @@ using testing::HasSubstr;
 
 constexpr double clearance = 2.0;
 
-/// A tower, 10 x 10 m, between a place at y = 0 and the pad 60 m to the west of it.
+/// Returns a tower of 10 x 10 m between the position at y = 0 and the pad 60 m west of it.
 Obstacles tower(double height) {
   Obstacles obstacles;
   obstacles.mesh = scenes::box({-35, -5, 0}, {-25, 5, height});
@@ -36,8 +36,8 @@ RtlProfile make_rtl_profile(std::vector<AutopilotType> autopilots) {
 
 const std::vector<Segment> leg{{{0, 0, 10}, {0, 3, 12}}};
 
-// Over a tower of 30 m at 2 m the middle of the band must pass at 32 m and a bit: with bands of 2
-// and 0.8 m the heights are 34 and 32.8, and whole metres above that.
+// Above a tower of 30 m with 2 m clearance, the middle of the altitude band must be slightly above
+// 32 m. With bands of 2 and 0.8 m, the altitudes are 34 and 32.8 m, rounded up to whole metres.
 TEST(MinReturnAltitude, IsSmallestWholeMetreAboveTower) {
   const KnownSpace space(tower(30.0));
   for (const auto& [autopilot, height] :
@@ -51,8 +51,8 @@ TEST(MinReturnAltitude, IsSmallestWholeMetreAboveTower) {
   }
 }
 
-// A route at 11.3 m where nothing above 5 m is looked for: the metre above it, or, under a fence's
-// ceiling that leaves 11.5 m, its own height.
+// A route at 11.3 m, with obstacles below 5 m only. The return altitude is the next whole metre
+// above the route. If the fence has a ceiling of 11.5 m, it is the altitude of the route.
 TEST(MinReturnAltitude, IsNotBelowRoute) {
   const std::vector<Segment> high{{{0, 0, 11.3}, {0, 3, 11.3}}};
   Obstacles obstacles = tower(3.0);
@@ -73,7 +73,7 @@ TEST(MinReturnAltitude, IsNotBelowRoute) {
                    .found);
 }
 
-// All whole metres above the route tried one after the other give the same answer as the search.
+// Trying all whole metres above the route gives the same result as the search.
 TEST(MinReturnAltitude, MatchesSearchOverAllWholeMetres) {
   for (const double top : {8.0, 17.3, 24.0, 41.9}) {
     const KnownSpace space(tower(top));
@@ -90,9 +90,9 @@ TEST(MinReturnAltitude, MatchesSearchOverAllWholeMetres) {
   }
 }
 
-// A wall beside the whole way keeps 1 cm more than is asked for: too little for balls of 5 cm,
-// which planned legs may meet, and enough for smaller ones. At less than is asked for nothing
-// helps.
+// The wall along the path leaves 1 cm more than the clearance. This is too little for balls of 5
+// cm, which planned legs may touch, and enough for smaller ones. Less than the clearance is always
+// rejected.
 TEST(MinReturnAltitude, IsVerifiedWithLessRoomThanPlanningSlack) {
   const auto beside = [](double distance) {
     Obstacles obstacles;
@@ -115,8 +115,8 @@ TEST(MinReturnAltitude, IsVerifiedWithLessRoomThanPlanningSlack) {
       min_return_altitude(beside(clearance - 0.01), along, rtl_profile, 60.0, clearance).found);
 }
 
-// Airspace that is forbidden up to any height lies between the route and the pad: nobody returns
-// over it, but to a rally point on this side.
+// A no-fly zone of unlimited height separates the route from the pad. The return goes to a rally
+// point on this side.
 TEST(MinReturnAltitude, UsesRallyPointWhenPadIsUnreachable) {
   Obstacles obstacles;
   obstacles.ground_height = 0.0;
@@ -130,7 +130,7 @@ TEST(MinReturnAltitude, UsesRallyPointWhenPadIsUnreachable) {
   const ReturnSearch search = min_return_altitude(space, leg, rtl_profile, 60.0, clearance);
   ASSERT_TRUE(search.found) << search.reason;
   EXPECT_GE(search.found->clearance, clearance);
-  rtl_profile.landings.back() = {-23.5, 0, 0};  // 1.5 m beside the airport
+  rtl_profile.landings.back() = {-23.5, 0, 0};  // 1.5 m from the airport
   EXPECT_FALSE(min_return_altitude(space, leg, rtl_profile, 60.0, clearance).found);
 }
 
@@ -144,7 +144,7 @@ TEST(MinReturnAltitude, NamesObstacleWhenCeilingIsTooLow) {
   EXPECT_THAT(search.reason, AllOf(HasSubstr("at a return altitude of 60 m"), HasSubstr("fence")));
 }
 
-// DJI's applications take 20 m or more.
+// DJI's applications accept 20 m or more.
 TEST(MinReturnAltitude, IsTwentyMetresOrMoreForDji) {
   const KnownSpace space(tower(1.0));
   const ReturnSearch search =
@@ -153,7 +153,8 @@ TEST(MinReturnAltitude, IsTwentyMetresOrMoreForDji) {
   EXPECT_DOUBLE_EQ(search.found->height, 20.0);
 }
 
-/// Of a box of 40 x 40 x 30 m only what is below 15 m was seen free, but for a shaft at its edge.
+/// Returns the measured space of a box of 40 x 40 x 30 m. Only the part below 15 m and a shaft at
+/// the edge were observed as free.
 MeasuredSpace cellar() {
   MeasuredSpaceConfig config;
   config.voxel = 0.5;
@@ -171,7 +172,7 @@ RouteOptions options_with_returns() {
   return options;
 }
 
-// Where nobody has looked up there is no way home, and the station is named with the reason.
+// Below unobserved space there is no return path. The capture point is reported with this reason.
 TEST(ReturnPaths, OmitCapturePointsUnderUnknownSpace) {
   const MeasuredSpace measured = cellar();
   Obstacles rules;
@@ -182,7 +183,7 @@ TEST(ReturnPaths, OmitCapturePointsUnderUnknownSpace) {
       {geometry::look_at({14, 0, 8}, {0, 0, 8}), 1.0, 1, 5},
       {geometry::look_at({0, 0, 8}, {5, 0, 8}), 1.0, 1, 6}};
   RouteOptions options = options_with_returns();
-  // A return at 13 m would be free, but routes are planned for the greatest height.
+  // A return at 13 m would be free, but routes are planned with the maximum return altitude.
   const Route route = plan_route(capture_points, {}, space, nullptr, options);
   ASSERT_EQ(route.capture_points.size(), 1U);
   ASSERT_EQ(route.unreached.size(), 1U);
@@ -196,7 +197,8 @@ TEST(ReturnPaths, OmitCapturePointsUnderUnknownSpace) {
   EXPECT_EQ(plan_route(capture_points, {}, space, nullptr, options).capture_points.size(), 2U);
 }
 
-// The straight leg between two shafts leads under what nobody has seen: it goes over it instead.
+// The straight leg between two shafts passes below unobserved space, so the planned leg goes over
+// it.
 TEST(ReturnPaths, KeepLegsWhereEveryPointHasVerifiedReturn) {
   MeasuredSpace measured = cellar();
   measured.declare_free(Eigen::AlignedBox3d(Vector3d(-20, -20, 0), Vector3d(-8, 20, 30)));
@@ -218,13 +220,13 @@ TEST(ReturnPaths, KeepLegsWhereEveryPointHasVerifiedReturn) {
                                route.clearance - return_slack)
                     .is_verified);
   }
-  // Up over 32 m and down again takes 28 + 48 m; nothing is shorter by much.
+  // The climb above 32 m and the descent take 28 + 48 m. No path is much shorter.
   EXPECT_LT(route.legs[0].length, 80.0);
   EXPECT_GT(route.legs[0].length, 28.0);
 }
 
-// The way with returns is half as long again. Whatever the battery, each view is flown or named:
-// one that has become too far does not cost all of them.
+// The path with returns is longer by half. For any battery, each view is flown or reported. One
+// view that has become too distant does not discard the others.
 TEST(ReturnPaths, ReportViewsOutOfBatteryRange) {
   MeasuredSpace measured = cellar();
   measured.declare_free(Eigen::AlignedBox3d(Vector3d(-20, -20, 0), Vector3d(-8, 20, 30)));
@@ -271,8 +273,8 @@ TEST(ReturnPaths, RejectCapturePointsWithoutVerifiedReturnAltitude) {
               AllOf(HasSubstr("no verified return"), HasSubstr("the level flight")));
 }
 
-// A way that is pulled tight ends where a rule begins: at the 50 m within which DJI's vehicles fly
-// home level. The route's own proof divides its legs otherwise, and must not fail there.
+// A shortened path ends where another rule begins, at the 50 m within which DJI vehicles return
+// level. The route verification divides its legs differently and must still succeed.
 TEST(ReturnPaths, AreVerifiedAtDjiLevelReturnDistance) {
   RouteOptions options;
   options.takeoff = {-60, 0, 0};
@@ -299,7 +301,7 @@ TEST(ReturnPaths, AreVerifiedAtDjiLevelReturnDistance) {
   EXPECT_GT(reached, 80U);
 }
 
-// Climb and level flight by hand, in still air; hover for the waits and the descent.
+// Computed by hand for still air: climb and level flight, plus hover for the waits and the descent.
 TEST(ReturnEnergy, IsSumOfSegmentsAndWaits) {
   const Motion motion({}, {});
   RtlProfile rtl_profile = make_rtl_profile({AutopilotType::px4});

@@ -95,9 +95,9 @@ TEST(RtlProfile, UsesNearestLandingOrBothWhenAmbiguous) {
   expect_line(find(return_segments(rtl_profile, {80, 0, 10}), ReturnPart::level), {80, 0, 39},
               {100, 0, 39}, 1.0);
   EXPECT_THAT(return_segments(rtl_profile, {52, 0, 10}),
-              SizeIs(3));  // 48 and 52 m: within 10 m of another.
+              SizeIs(3));  // distances 48 and 52 m differ by less than 10 m
   EXPECT_THAT(return_segments(rtl_profile, {30, 0, 10}, 20.0),
-              SizeIs(3));  // some within 20 m are nearer
+              SizeIs(3));  // from positions within 20 m, the other landing may be closer
 }
 
 /// Returns the distance of the points of `segment` from the nearest segment of the same part. Ends

@@ -61,7 +61,7 @@ TEST(CloudIo, KeepsAbsentAttributesAbsent) {
   EXPECT_TRUE(again.normals.empty() && again.views.empty() && again.colours.empty());
 }
 
-// What we write is read by an independent reader, CGAL's.
+// CGAL, an independent reader, reads the written files.
 TEST(CloudIo, WritesFilesThatCgalReads) {
   using Kernel = CGAL::Simple_cartesian<float>;
   const TemporaryFolder folder;
@@ -119,7 +119,7 @@ TEST(CloudIo, ReadsPcdTextWithFieldsInAnyOrder) {
   EXPECT_THAT(cloud.normals, testing::ElementsAre(Vector3f(0, 0, 1), Vector3f(1, 0, 0)));
 }
 
-/// The bytes of LAS 1.4 with points of a format, all at (1.5, -2, 3).
+/// Returns the bytes of a LAS 1.4 file with this point format. All points are at (1.5, -2, 3).
 std::string las_bytes(int format, std::size_t points, std::size_t declared) {
   const std::size_t point_size = format == 7 ? 36 : 30;
   std::string bytes(375 + points * point_size, '\0');
@@ -133,7 +133,7 @@ std::string las_bytes(int format, std::size_t points, std::size_t declared) {
   put(104, static_cast<std::uint8_t>(format));
   put(105, static_cast<std::uint16_t>(point_size));
   for (std::size_t axis = 0; axis < 3; ++axis) put(131 + 8 * axis, 0.5);
-  put(155, 1.0);  // offset of x
+  put(155, 1.0);  // x offset
   put(247, static_cast<std::uint64_t>(declared));
   for (std::size_t i = 0; i < points; ++i) {
     const std::size_t offset = 375 + i * point_size;
@@ -148,7 +148,7 @@ std::string las_bytes(int format, std::size_t points, std::size_t declared) {
 TEST(CloudIo, ReadsLasPointsWithScaleAndOffset) {
   const TemporaryFolder folder;
   std::string bytes = las_bytes(7, 3, 3);
-  bytes[375 + 36 + 15] = 4;  // the second is withheld
+  bytes[375 + 36 + 15] = 4;  // the second point has the withheld flag
   const AttributedCloud cloud = read_cloud(folder.file("a.las", bytes));
   EXPECT_THAT(cloud.positions, testing::ElementsAre(Vector3f(1.5F, -2, 3), Vector3f(1.5F, -2, 3)));
   ASSERT_EQ(cloud.colours.size(), 2U);
@@ -205,7 +205,7 @@ TEST(CloudIo, ReportsCauseForInvalidLasFiles) {
       {with(104, 0x86), "is compressed (LAZ), but the LAZ record is missing"},
       {with(105, 20), "has points of 20 bytes; those of format 6 have 30"},
       {with(96, 0), "has a point offset inside its header"},
-      {with(138, -1), "a coordinate scale or offset"},  // the sign and exponent of the scale of x
+      {with(138, -1), "a coordinate scale or offset"},  // sign and exponent of the x scale
       {las_bytes(6, 2, 5), "ends after 2 of its 5 points"},
       {las_bytes(6, 0, std::size_t{1} << 62), "ends after 0 of its 4611686018427387904 points"},
       {las_bytes(6, 1, 1).substr(0, 200), "ends within the header"},
@@ -243,7 +243,7 @@ TEST(CloudIo, ReportsCauseForInvalidPcdFiles) {
       {head + "DATA binary_compressed\n1234", "ends before its compressed data"},
       {head + "DATA binary_compressed\n" + sizes, "ends within its compressed data"},
       {head + "DATA binary_compressed\n" + std::string("\2\0\0\0\30\0\0\0\40\5", 10),
-       "damaged compressed data"},  // a copy from before the beginning
+       "damaged compressed data"},  // a copy from before the beginning of the output
   };
   for (const auto& broken : cases) {
     EXPECT_THAT([&] { read_cloud(folder.file("cloud.pcd", broken.bytes)); },
@@ -285,7 +285,7 @@ TEST(CloudIo, ReportsCauseForInvalidPlyAndTextFiles) {
   }
 }
 
-// Withheld points take part in neither.
+// Both readers skip withheld points.
 TEST(ReadPositions, MatchesReadCloudForLasFiles) {
   const TemporaryFolder folder;
   std::string bytes = las_bytes(6, 5, 5);
@@ -300,7 +300,7 @@ TEST(ReadPositions, MatchesReadCloudForLasFiles) {
   EXPECT_EQ(positions, read_cloud(path).positions);
 }
 
-// In two pieces and their order; what is read of the file grows to all of it.
+// The cloud arrives in two chunks, in order. The reported fraction of the file grows to 1.
 TEST(ReadPositions, PassesCloudInChunks) {
   const TemporaryFolder folder;
   AttributedCloud cloud;
@@ -332,7 +332,7 @@ TEST(ReadPositions, PassesTextInChunks) {
                    shares.push_back(share);
                  });
   EXPECT_THAT(sizes, ElementsAre(1'000'000, 200'000));
-  EXPECT_NEAR(shares[0], 1.0 / 1.2, 1e-5);  // but for the comment
+  EXPECT_NEAR(shares[0], 1.0 / 1.2, 1e-5);  // except for the comment
   EXPECT_EQ(shares[1], 1.0);
 }
 

@@ -1,4 +1,4 @@
-/// What the tests of E57 files share.
+/// Common parts of the E57 tests.
 #pragma once
 
 #include <array>
@@ -40,7 +40,7 @@ class E57 : public testing::Test {
     }
     return all;
   }
-  /// The message of the refusal; empty if it is read.
+  /// Returns the error message; empty if the file is read.
   std::string rejection(const std::string& bytes) const {
     try {
       read(bytes);
@@ -56,14 +56,14 @@ class E57 : public testing::Test {
   const TemporaryFolder folder_;
 };
 
-/// XML of a pose: w x y z, and x y z.
+/// Returns the XML of a pose with the rotation (w x y z) and the translation (x y z).
 inline std::string make_pose(const std::string& rotation, const std::string& translation) {
   const auto numbers = [](const char* names, const std::string& text) {
     std::string xml;
     std::istringstream stream(text);
     std::string number;
     for (const char* name = names; stream >> number; ++name) {
-      // What is zero may be left empty.
+      // Elements with the value zero may be empty.
       xml += std::string("<") + *name + " type=\"Float\">" + (number == "0" ? "" : number) + "</" +
              *name + ">";
     }

@@ -1,4 +1,4 @@
-// E57 files that are damaged, cut short or made to harm: each is one clear line.
+// Damaged, truncated and malicious E57 files give a one-line error.
 
 #include <random>
 #include <string>
@@ -29,7 +29,7 @@ TEST_F(E57, RejectsDamagedPages) {
   }
 }
 
-/// A whole file with something else in its place, once, and checksums that agree.
+/// Replaces the only occurrence of `old` and corrects the checksums.
 std::string with(const std::string& bytes, const std::string& old, const std::string& now) {
   std::string content = extract_e57_content(bytes);
   const std::size_t offset = content.find(old);
@@ -39,7 +39,7 @@ std::string with(const std::string& bytes, const std::string& old, const std::st
   return e57_with_xml(content.substr(0, begin), content.substr(begin, end - begin));
 }
 
-/// The same for a byte and those behind it.
+/// Replaces the bytes at `offset` and corrects the checksums.
 std::string with_bytes(const std::string& bytes, std::size_t offset, const std::string& now) {
   std::string content = extract_e57_content(bytes);
   content.replace(offset, now.size(), now);
@@ -49,7 +49,7 @@ std::string with_bytes(const std::string& bytes, std::size_t offset, const std::
 TEST_F(E57, ReportsCauseForInvalidFiles) {
   const std::string whole = make_e57_from_points(three_points);
   const std::string eight(8, '\xFF');
-  // Header of the file, of the records at 48, of the first packet at 80.
+  // Offsets: 0 file header, 48 record header, 80 first packet.
   const struct {
     std::string bytes, message;
   } cases[] = {
@@ -109,14 +109,14 @@ TEST_F(E57, ReportsCauseForInvalidFiles) {
   };
   for (const auto& broken : cases) {
     if (broken.message == "E57 is refused for its packets") {
-      EXPECT_FALSE(rejection(broken.bytes).empty());  // the header's letters are no packet
+      EXPECT_FALSE(rejection(broken.bytes).empty());  // the file header is not a valid packet
       continue;
     }
     EXPECT_THAT(rejection(broken.bytes), HasSubstr(broken.message));
   }
 }
 
-// A short file that tells of any number of points that take no bits at all.
+// A short file that declares any number of points with zero bits each.
 TEST_F(E57, RejectsMorePointsThanItsBytesCanContain) {
   E57Scan scan;
   for (const char* name : {"cartesianX", "cartesianY", "cartesianZ"}) {
@@ -127,7 +127,7 @@ TEST_F(E57, RejectsMorePointsThanItsBytesCanContain) {
               testing::ElementsAre(Eigen::Vector3d(5, 5, 5), Eigen::Vector3d(5, 5, 5)));
   scan.records = std::uint64_t{1} << 60;
   EXPECT_THAT(rejection(make_e57({scan})), HasSubstr("declares 1152921504606846976 points"));
-  // Nor of so many more than it has bytes that they fill the memory.
+  // It must not declare so many more points than it has bytes that they exhaust the memory.
   scan.streams[0] = e57_integers("cartesianX", 0, 1, std::vector<std::int64_t>(80'000, 1));
   scan.records = 65'536;
   EXPECT_EQ(read(make_e57({scan})).positions.size(), 65'536U);
@@ -162,7 +162,7 @@ TEST_F(E57, RejectsTruncatedFiles) {
   }
 }
 
-// With checksums that agree, so that more than they is put to the test.
+// Checksums are valid, so that the changes reach the parsers.
 TEST_F(E57, ReadsOrRejectsChangedBytes) {
   E57Scan scan{
       {e57_integers("cartesianX", -9, 9, {1, 2, 3, 4, 5}),
@@ -178,7 +178,7 @@ TEST_F(E57, ReadsOrRejectsChangedBytes) {
   int rejected = 0, read_whole = 0;
   for (int change = 0; change < 1000; ++change) {
     std::string bytes = content;
-    // What is not XML is a tenth of the file: half of the changes.
+    // The binary part is a tenth of the file and gets half of the changes.
     const std::size_t end = change % 2 == 0 ? 300 : bytes.size();
     for (int i = 0; i < 2; ++i) bytes[random() % end] = static_cast<char>(random());
     ++(rejection(e57_pages(bytes)).empty() ? read_whole : rejected);

@@ -1,4 +1,4 @@
-// E57 files, made by tests/support/e57_bytes.h of values that stand here.
+// Reads E57 files that tests/support/e57_bytes.h creates from known values.
 
 #include <cmath>
 #include <limits>
@@ -26,8 +26,8 @@ TEST_F(E57, ReadsExactCoordinates) {
               ElementsAre(Vector3d(1, 2, 3), Vector3d(-4.5, 1e-3, 6), Vector3d(0.1, 0.2, 1e4)));
 }
 
-// Of each width from none to 64 bits, in packets whose streams are cut within values; x, y and z
-// are read with y of that width between two of others.
+// Bit widths from 0 to 64. Packets end within values, and a stream with this width is between two
+// streams with other widths.
 TEST_F(E57, ReadsIntegersOfAnyBitWidth) {
   std::mt19937_64 random(1);
   for (unsigned bits = 0; bits <= 64; ++bits) {
@@ -55,7 +55,7 @@ TEST_F(E57, ReadsIntegersOfAnyBitWidth) {
   }
 }
 
-// Without a minimum or a maximum an integer has 64 bits.
+// Integers without a minimum or maximum have 64 bits.
 TEST_F(E57, ReadsIntegersWithoutRangeAsSixtyFourBits) {
   E57Stream x{"<cartesianX type=\"Integer\"/>", {}};
   x.add(static_cast<std::uint64_t>(-7) + (std::uint64_t{1} << 63), 64);
@@ -76,7 +76,7 @@ TEST_F(E57, ReadsScaledIntegersWithScaleAndOffset) {
       ElementsAre(Vector3d(-125, 750, -500), Vector3d(1.75, 1003.5, 7), Vector3d(125, 1250, 500)));
 }
 
-// r, azimuth from x to y, elevation from that plane to z.
+// Range, azimuth from x to y, elevation from that plane to z.
 TEST_F(E57, ConvertsSphericalToCartesianCoordinates) {
   const double quarter = std::acos(0.0);
   const E57Scan scan{{e57_doubles("sphericalAzimuth", {0, quarter, 0.3, -2 * quarter}),
@@ -100,7 +100,7 @@ TEST_F(E57, PrefersCartesianToSphericalCoordinates) {
   EXPECT_THAT(read(make_e57({scan})).positions, ElementsAre(Vector3d(1, 2, 3)));
 }
 
-// 1 is a direction without a range, 2 is nothing at all; scanners write NaN, too.
+// State 1: direction without a range. State 2: invalid. Some scanners write NaN.
 TEST_F(E57, SkipsInvalidPoints) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const bool is_spherical : {false, true}) {
@@ -122,7 +122,7 @@ E57Scan make_single_point_scan(double x, double y, double z, const std::string& 
           more};
 }
 
-// A quarter about z, a half about x, nothing but a way, nothing at all.
+// Rotation by 90° about z, by 180° about x, translation only, and no pose.
 TEST_F(E57, AppliesScanPoses) {
   const std::string half_root = "0.70710678118654752";
   const Read all = read(make_e57(
@@ -148,7 +148,7 @@ TEST_F(E57, SkipsScansWithoutPoints) {
   EXPECT_TRUE(read(make_e57({})).positions.empty());
 }
 
-// Packets begin and end anywhere in pages, and indices and unused room stand between them.
+// Packets begin and end anywhere in pages. Index packets and unused space may be between them.
 TEST_F(E57, ReadsPacketsAcrossPages) {
   constexpr int count = 5000;
   std::vector<double> x;
@@ -179,7 +179,7 @@ TEST_F(E57, ReadsPacketsAcrossPages) {
   }
 }
 
-// Text has no fixed length; a coordinate of an extension is none of the point.
+// Strings have no fixed length. Coordinates of an extension are not those of the point.
 TEST_F(E57, IgnoresOtherFields) {
   E57Scan scan = make_single_point_scan(1, 2, 3, "");
   E57Stream text{"<name type=\"String\"/>", {}};
@@ -220,7 +220,7 @@ TEST_F(E57, ScalesColoursFromMinToMax) {
               ElementsAre(Colour{128, 0, 255}));
 }
 
-// Those that one scan lacks nobody has.
+// Attributes that are missing in one scan are discarded for all.
 TEST_F(E57, ReadsOnlyAttributesOfAllScans) {
   E57Scan coloured = make_single_point_scan(1, 2, 3, ""),
           turned = make_single_point_scan(1, 2, 3, make_pose("0 0 0 1", ""));

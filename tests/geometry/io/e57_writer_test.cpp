@@ -1,4 +1,4 @@
-// E57 files that Skycap writes, and their checksums.
+// E57 files written by Skycap, and their checksums.
 
 #include <algorithm>
 #include <string>
@@ -15,7 +15,7 @@ namespace {
 
 using namespace testing_support;
 
-// RFC 3720, appendix B.4, and the sum of the nine digits that every description of a CRC gives.
+// RFC 3720, appendix B.4, and the CRC of "123456789" that CRC catalogues list.
 TEST(Crc32c, MatchesPublishedValues) {
   EXPECT_EQ(e57::crc32c("123456789"), 0xE3069283U);
   EXPECT_EQ(e57::crc32c(std::string(32, '\0')), 0x8A9136AAU);
@@ -44,7 +44,7 @@ AttributedCloud some_cloud(std::size_t count) {
   return cloud;
 }
 
-// 10,000 points are five packets with all attributes.
+// With all attributes, 10,000 points need five packets.
 TEST_F(E57, RoundTripsThroughWriter) {
   for (const std::size_t count : {1U, 2U, 43U, 10'000U}) {
     const AttributedCloud cloud = some_cloud(count);
@@ -80,7 +80,7 @@ std::vector<std::string> read_guids(const std::filesystem::path& path) {
   return found;
 }
 
-// The bytes follow from the cloud alone, and its identifiers with it.
+// The bytes, including the identifiers, depend only on the cloud.
 TEST_F(E57, WritesSameBytesForSameCloud) {
   AttributedCloud cloud = some_cloud(100);
   const auto write = [&](const std::string& name) {

@@ -1,4 +1,4 @@
-// Eight points as other programs write them.
+// Clouds of eight points in the formats of other programs.
 #include <cstring>
 #include <string>
 #include <vector>
@@ -30,7 +30,7 @@ std::vector<Vector3f> corners() {
   return points;
 }
 
-/// A line for each point; `order` says which coordinate is in which column.
+/// Returns one line for each point. `order` is the order of the coordinate columns.
 std::string lines(const std::string& apart, const std::string& after = "",
                   const std::string& order = "xyz", char point = '.') {
   std::string text;
@@ -155,7 +155,7 @@ TEST_F(ForeignCloud, ReadsPcdOfOldVersionsAndWithOtherLineEnds) {
   expect_corners("a.pcd", replaced(pcd, "\n", "\r"));
 }
 
-/// A PLY file whose vertices are a byte and three floats, or with colours.
+/// Returns a PLY file whose vertices have one byte and three floats, or colours.
 std::string binary_ply(const std::string& properties, const std::string& point_bytes,
                        const std::string& line_end) {
   std::string bytes = "ply\nformat binary_little_endian 1.0\nelement vertex 8\n" + properties +
@@ -168,7 +168,7 @@ std::string binary_ply(const std::string& properties, const std::string& point_b
   return bytes;
 }
 
-// The first byte of the data is the end of a line, which belongs to no line here.
+// The first data byte equals a line end, but is not part of the header.
 TEST_F(ForeignCloud, ReadsBinaryPlyAfterHeaderWithAnyLineEnds) {
   for (const char* line_end : {"\n", "\r\n", "\r"}) {
     expect_corners("a.ply", binary_ply("property uchar q\n", "\n", line_end));
@@ -199,7 +199,8 @@ TEST_F(ForeignCloud, ScalesColoursByTypeOrIgnoresThem) {
   EXPECT_EQ(make_colour("int", -1, 0, 0), std::nullopt);
 }
 
-/// LAS 1.4 of format 2, with the counts of old and new versions, and a colour.
+/// Returns a LAS 1.4 file with point format 2, a colour, and the point counts of old and new
+/// versions.
 std::string make_las(std::uint32_t old_count, std::uint64_t count, std::uint16_t scale) {
   const std::size_t size = las::point_size(2);
   std::string bytes(las::header::end + 8 * size, '\0');
@@ -233,7 +234,7 @@ std::string make_las(std::uint32_t old_count, std::uint64_t count, std::uint16_t
 TEST_F(ForeignCloud, ReadsLasWithOnlyOnePointCount) {
   expect_corners("a.las", make_las(8, 0, 256));
   expect_corners("a.las", make_las(0, 8, 256));
-  expect_corners("a.las", make_las(5, 8, 256));  // the new one counts
+  expect_corners("a.las", make_las(5, 8, 256));  // the new count is used
 }
 
 TEST_F(ForeignCloud, ReadsEightBitLasColours) {

@@ -1,4 +1,4 @@
-// One box as other programs write it: each file of a format is the same 12 triangles.
+// One box in the formats of other programs: each file contains the same 12 triangles.
 #include <cstring>
 #include <limits>
 #include <string>
@@ -21,7 +21,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing_support::TemporaryFolder;
 
-/// 4 x 3 x 2: an area of 52.
+/// 4 x 3 x 2, surface area 52.
 const std::vector<std::array<double, 3>> vertices = {{0, 0, 0}, {4, 0, 0}, {4, 3, 0}, {0, 3, 0},
                                                      {0, 0, 2}, {4, 0, 2}, {4, 3, 2}, {0, 3, 2}};
 const std::vector<std::array<int, 4>> faces = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
@@ -29,7 +29,7 @@ const std::vector<std::array<int, 4>> faces = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1
 
 std::string format_number(double number) { return std::to_string(static_cast<int>(number)); }
 
-/// A line for each vertex.
+/// Returns one line for each vertex.
 std::string vertex_lines(const std::string& before = "", const std::string& after = "",
                          const std::string& apart = " ") {
   std::string text;
@@ -40,7 +40,7 @@ std::string vertex_lines(const std::string& before = "", const std::string& afte
   return text;
 }
 
-/// A line for each face, its indices counted from `first`.
+/// Returns one line for each face, with indices from `first`.
 std::string face_lines(const std::string& before, const std::string& after, int first,
                        const std::string& apart = " ") {
   std::string text;
@@ -129,8 +129,8 @@ TEST_F(ForeignMesh, ReadsOffWithCountsOnAnyLine) {
   expect_box("a.off", "OFF\n# made\n8\n6\n0\n\n" + vertex_lines() +
                           face_lines("4 ", " 0.5 0.5 0.5 # red", 0));
   const std::string all = off_text();
-  expect_box("a.off", replaced(all, "\n", " "));  // free-form, in one line
-  expect_box("a.off", replaced(all, " ", "\n"));  // a number a line
+  expect_box("a.off", replaced(all, "\n", " "));  // free format, in one line
+  expect_box("a.off", replaced(all, " ", "\n"));  // one number per line
   expect_box("a.off", "\xEF\xBB\xBF" + replaced(all, "\n", "\r"));
 }
 
@@ -174,7 +174,7 @@ TEST_F(ForeignMesh, NamesMaterialsByWholeLine) {
   EXPECT_THAT(names, ElementsAre("Curtain Wall Panel", "Curtain Wall Glass", "Glass #2"));
 }
 
-// The first of nine vertices is used by no face: a lost line would be another solid.
+// No face uses the first of the nine vertices. If a line were lost, the solid would differ.
 TEST_F(ForeignMesh, ReadsObjWithByteOrderMarksAndAnyLineEnds) {
   const std::string unused = vertex_lines("v ") + "v 9 9 9\n" + face_lines("f ", "", 1);
   expect_box("a.obj", "\xEF\xBB\xBF" + unused);
@@ -252,7 +252,7 @@ TEST_F(ForeignMesh, ReadsTriangleStrips) {
   }
   expect_box("a.ply", ascii);
   expect_box("a.ply", binary);
-  // All triangles of a strip are turned the same way.
+  // All triangles of a strip have the same orientation.
   const Mesh mesh = read_mesh(folder_.file("a.ply", ascii));
   double volume = 0.0;
   for (const auto& [a, b, c] : mesh.triangles) {

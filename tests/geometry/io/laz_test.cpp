@@ -1,5 +1,5 @@
-// Compressed LAS. The files were made by LASzip 3.5, the reference compressor, of points that a
-// formula gives, which stands here once more; various_chunks.laz has chunks of 70, 13, 1 and 216.
+// LAZ files. LASzip 3.5, the reference compressor, created them from points computed by a formula
+// that is repeated here. various_chunks.laz has chunks of 70, 13, 1 and 216 points.
 
 #include <cstring>
 #include <fstream>
@@ -45,7 +45,8 @@ std::array<std::uint16_t, 3> make_colour(int i) {
   return {word(red), word(green), word(blue)};
 }
 
-/// Reads in pieces of so many points, and compares with the formula; every 60th is withheld.
+/// Reads chunks of this size and compares the points with the formula. Every 60th point is
+/// withheld.
 void expect_formula(LasReader& reader, std::size_t chunk) {
   LasPoints points;
   int i = 0;
@@ -59,7 +60,7 @@ void expect_formula(LasReader& reader, std::size_t chunk) {
       ASSERT_EQ(points.colours[k], make_colour(i)) << i;
     }
   }
-  EXPECT_EQ(i, point_count - 1);  // the last one is withheld
+  EXPECT_EQ(i, point_count - 1);  // the last point is withheld
 }
 
 class Laz : public testing::TestWithParam<const char*> {};
@@ -85,7 +86,8 @@ TEST_P(Laz, ReadsCloud) {
   EXPECT_EQ(positions, cloud.positions);
 }
 
-/// Points, or one line that names the file.
+/// Returns true if reading ends with a one-line error that names the file, false if points are
+/// read.
 bool is_rejected(const TemporaryFolder& folder, const std::string& bytes) {
   try {
     LasReader reader(folder.file("spoiled.laz", bytes));
@@ -105,7 +107,7 @@ bool is_rejected(const TemporaryFolder& folder, const std::string& bytes) {
 TEST_P(Laz, RejectsTruncatedFiles) {
   const TemporaryFolder folder;
   const std::string whole = read_bytes(GetParam());
-  // Of the table of chunks, which is last, the end may be missing: it is padded.
+  // The chunk table is at the end of the file. It is padded, so its last bytes may be missing.
   ASSERT_GT(whole.size(), 12U);
   for (std::size_t size = 0; size + 12 < whole.size(); size += 61) {
     EXPECT_TRUE(is_rejected(folder, whole.substr(0, size))) << size;
@@ -135,7 +137,7 @@ INSTANTIATE_TEST_SUITE_P(Formats, Laz,
 
 class CorruptedLaz : public testing::Test {
  protected:
-  /// What is said of the file with another value at a place.
+  /// Checks the error message for a file with a changed value at `offset`.
   template <typename Value>
   void expect_rejection(std::size_t offset, Value value, const std::string& message) const {
     std::string bytes = whole_;
@@ -152,7 +154,7 @@ class CorruptedLaz : public testing::Test {
 
   const TemporaryFolder folder_;
   const std::string whole_ = read_bytes("format7");
-  // Where LASzip puts the content of its record, the points, and the table of chunks.
+  // Offsets of the LASzip record, the points and the chunk table.
   const std::size_t record_ = whole_.find("laszip encoded") + 52;
   const std::size_t points_ = record_ + 34 + 2 * 6;
   const std::size_t table_ = [this] {

@@ -25,7 +25,7 @@ using Eigen::Vector3d;
 using testing::HasSubstr;
 using testing_support::TemporaryFolder;
 
-/// A closed surface with shared vertices: a pyramid over the unit square.
+/// Returns a closed surface with shared vertices: a pyramid on the unit square.
 Mesh pyramid() {
   return {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, 0.75}},
           {{0, 2, 1}, {0, 3, 2}, {0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}}};
@@ -47,7 +47,7 @@ class MeshIo : public testing::Test {
     return read_mesh(folder_.file(name, bytes), options);
   }
 
-  /// The message that reading such a file ends with, without the folder's name.
+  /// Returns the error message for such a file, without the folder name.
   std::string error_message(std::string_view name, std::string_view bytes) {
     try {
       read(name, bytes);
@@ -80,7 +80,7 @@ TEST_P(MeshIoRoundTrip, KeepsTheMesh) {
       << "no temporary file is left";
 }
 
-// What we write is read by an independent reader, CGAL's.
+// CGAL, an independent reader, reads the written files.
 TEST_P(MeshIoRoundTrip, WritesFilesThatCgalReads) {
   using Point = CGAL::Simple_cartesian<double>::Point_3;
   const TemporaryFolder folder;
@@ -124,7 +124,7 @@ TEST_F(MeshIo, ReadsPlyPropertiesInAnyOrder) {
   EXPECT_DOUBLE_EQ(surface_area(mesh), 1.0);
 }
 
-// The same file in both byte orders, put together here byte by byte.
+// The same file in both byte orders, assembled byte by byte.
 TEST_F(MeshIo, ReadsPlyInBothByteOrders) {
   for (const bool big : {false, true}) {
     std::string bytes = "ply\nformat binary_";
@@ -186,7 +186,7 @@ TEST_F(MeshIo, ReadsBinaryStlThatBeginsWithSolid) {
   EXPECT_DOUBLE_EQ(volume(read_mesh(path)), pyramid_volume);
 }
 
-// An L cut from its reflex corner's wrong side would cover more than its area.
+// An L shape that is cut at the wrong side of its reflex corner would cover more than its area.
 TEST_F(MeshIo, KeepsAreaAndOrientationOfConcavePolygons) {
   const Mesh mesh = read("a.off",
                          "OFF 8 2 0\n0 0 2\n3 0 2\n3 1 2\n1 1 2\n1 3 2\n0 3 2\n0 0 0\n0 3 0\n"
@@ -253,11 +253,11 @@ TEST_F(MeshIo, DecodesDraco) {
   const Mesh mesh = read("a.drc", draco_pyramid());
   EXPECT_EQ(mesh.vertices.size(), 5U);
   EXPECT_EQ(mesh.triangles.size(), 6U);
-  // 14 bits over the unit box: steps of 6e-5 in each coordinate.
+  // 14 bits for the unit box: steps of 6e-5 in each coordinate.
   EXPECT_NEAR(volume(mesh), pyramid_volume, 1e-4);
 }
 
-// Draco would read any byte as true or false, which none but 0 and 1 are.
+// Draco accepts any byte as a boolean, but only 0 and 1 are valid.
 TEST_F(MeshIo, RejectsDracoWithBooleanPositions) {
   constexpr std::string_view digits =
       "445241434f02020100000004040100010200020302012a0100030101000b03000000000000000000"
@@ -352,8 +352,8 @@ TEST_F(MeshIo, ReportsCauseForInvalidFiles) {
               testing::ThrowsMessage<Error>(HasSubstr("is a directory")));
 }
 
-// Whatever bytes come, the reader returns a mesh that can be used or throws its one exception; any
-// other exception, a crash, a hang or a sanitizer report fails the test.
+// For any bytes, the reader returns a usable mesh or throws Error. Another exception, a crash, a
+// hang or a sanitiser report fails the test.
 TEST_F(MeshIo, ReadsOrRejectsDamagedFiles) {
   std::mt19937_64 random(7);
   std::vector<std::pair<std::string, std::string>> originals{{"a.ply", std::string(ascii_ply)},
@@ -374,16 +374,16 @@ TEST_F(MeshIo, ReadsOrRejectsDamagedFiles) {
       try {
         mesh = read(name, bytes);
       } catch (const Error& error) {
-        EXPECT_THAT(error.what(), HasSubstr(name));  // which file it is
+        EXPECT_THAT(error.what(), HasSubstr(name));  // the message names the file
         ++rejected;
         continue;
       }
       EXPECT_NO_THROW(validate(*mesh)) << name << ", trial " << trial;
       ++read_anyway;
     }
-    EXPECT_GT(rejected, 50) << name;  // a cut file
+    EXPECT_GT(rejected, 50) << name;  // truncated files
   }
-  EXPECT_GT(read_anyway, 50);  // a changed coordinate of a binary file
+  EXPECT_GT(read_anyway, 50);  // changed coordinates in binary files
 }
 
 TEST_F(MeshIo, RejectsUnknownExtensionAndUnwritablePath) {

@@ -1,4 +1,4 @@
-// How large a mesh in a file may be: with limits that are small, so are the files beyond them.
+// Size limits of mesh files. The tests set small limits, so that small files exceed them.
 #include <array>
 #include <cstring>
 #include <string>
@@ -85,7 +85,7 @@ TEST(MeshLimits, LimitNumberOfMaterials) {
               ThrowsMessage<Error>(HasSubstr("a.obj: line 2: names more than 1 materials")));
 }
 
-/// A list is refused by its length, not by what it has taken.
+/// A list is rejected by its declared length, before its elements are read.
 TEST(MeshLimits, RejectPlyFaceWithTooManyCorners) {
   const std::uint32_t corners = 1'000'001;
   std::string bytes =
@@ -99,7 +99,7 @@ TEST(MeshLimits, RejectPlyFaceWithTooManyCorners) {
                   HasSubstr("a.ply: face 0 has a list of 1000001 values; the maximum is 1e6")));
 }
 
-/// Property: the pieces that a file is read in join without a seam.
+/// Property: a file that is read in chunks has no errors at chunk boundaries.
 TEST(MeshLimits, KeepLargePlyComplete) {
   constexpr std::uint32_t vertices = 1'000'003, faces = 400'000;
   std::string bytes =

@@ -38,8 +38,8 @@ void commit_pair(const fs::path& folder, const std::string& content) {
   out.commit();
 }
 
-// Every place at which a kill can cut a commit short: the journal stands, and the first `done` of
-// the renames are made. Whoever looks next finds the whole new result and nothing else.
+// All states in which a kill can interrupt a commit: the journal exists and the first `done`
+// renames have been made. The next access finds the complete new result and nothing else.
 TEST(OutputFolder, CompletesCommitInterruptedAtAnyStep) {
   const std::string journal = ".part-7-cloud\0cloud\0.part-7-summary\0summary\0\0gone\0"s;
   const std::vector<std::pair<std::string, std::string>> renames = {

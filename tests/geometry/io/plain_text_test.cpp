@@ -1,4 +1,4 @@
-// Text as other programs write it: marks, ends of lines, numbers.
+// Text files of other programs: byte order marks, line ends, numbers.
 #include "geometry/io/text/plain_text.h"
 
 #include <cmath>
@@ -23,7 +23,7 @@ TEST(PlainText, RemovesByteOrderMarkAndNormalisesLineEnds) {
   EXPECT_EQ(plain_text("\r"), "\n");
 }
 
-// U+00E4, U+20AC and U+1F600 take two, three and four bytes.
+// U+00E4, U+20AC and U+1F600 have two, three and four bytes in UTF-8.
 TEST(PlainText, ReadsUtf16InBothByteOrders) {
   const std::string utf8 = "a\xC3\xA4\xE2\x82\xAC\xF0\x9F\x98\x80";
   const std::u16string units = u"a\u00E4\u20AC\U0001F600";
@@ -37,7 +37,7 @@ TEST(PlainText, ReadsUtf16InBothByteOrders) {
     EXPECT_EQ(plain_text(bytes), utf8);
     EXPECT_EQ(as_utf8(bytes), utf8);
   }
-  EXPECT_EQ(as_utf8(std::string("<\0?\0", 4)), "<?");  // without a mark
+  EXPECT_EQ(as_utf8(std::string("<\0?\0", 4)), "<?");  // without a byte order mark
   EXPECT_EQ(as_utf8(std::string("\0<\0?", 4)), "<?");
 }
 

@@ -22,7 +22,7 @@ using testing::IsEmpty;
 
 class RecordLogFile : public testing::Test {
  protected:
-  /// A file of three records.
+  /// Creates a file with three records.
   RecordLogFile() {
     RecordLog log(file_);
     for (const char* text : {"one", "", "three {\"3\": 0.1}"}) log.append(text);
@@ -42,7 +42,7 @@ TEST_F(RecordLogFile, ReturnsAppendedRecords) {
   EXPECT_THAT(read_records(file_).records, ElementsAre("one", "", "three {\"3\": 0.1}", "four"));
 }
 
-/// The digits of the first record, by another implementation: Python's zlib.crc32(b"1 one").
+/// The checksum of the first record was computed with Python's zlib.crc32(b"1 one").
 TEST_F(RecordLogFile, UsesZlibCrc32) { EXPECT_THAT(bytes(), HasSubstr("7f7c96f6 1 one\n")); }
 
 TEST(RecordLog, IsEmptyWithoutFile) {
@@ -50,7 +50,7 @@ TEST(RecordLog, IsEmptyWithoutFile) {
   EXPECT_THAT(read_records(folder.path() / "log").records, IsEmpty());
 }
 
-/// A kill while the last record is written leaves any beginning of it.
+/// A kill during the write of the last record may leave any prefix of it.
 TEST_F(RecordLogFile, DiscardsIncompleteLastRecord) {
   const std::string whole = bytes();
   const std::size_t two_records = whole.find("three") - std::string("12345678 3 ").size();
@@ -64,7 +64,7 @@ TEST_F(RecordLogFile, DiscardsIncompleteLastRecord) {
   }
 }
 
-/// A power cut may leave a block of zeros, or of what the disk held before.
+/// A power failure may leave a block of zeros or of old disk contents.
 TEST_F(RecordLogFile, DiscardsGarbageAtEnd) {
   const std::string whole = bytes();
   put(whole + std::string(5000, '\0'));

@@ -16,7 +16,7 @@ using Eigen::Vector3f;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-/// The definition, from scratch. Points in `discarded` are never frontiers.
+/// Computes labels from their definition. Points in `discarded` are never frontiers.
 std::vector<PointLabel> labels_by_definition(const std::vector<Vector3f>& points, double radius,
                                              int core_threshold,
                                              const std::set<std::uint32_t>& discarded = {}) {
@@ -52,8 +52,8 @@ std::vector<std::uint32_t> frontiers(const std::vector<PointLabel>& labels) {
   return found;
 }
 
-// Sparse noise around a sphere, in batches: points turn core late, through neighbours of
-// neighbours. On one thread, and on several.
+// Sparse noise around a sphere, in batches. Points become core late, through neighbours of
+// neighbours. Runs with one thread and with several.
 TEST(DensityMap, MatchesFullRecomputationAfterEveryUpdate) {
   for (const int threshold : {4, 5, 8}) {
     DensityMap map({.radius = 0.12, .core_threshold = threshold, .spacing = 0.02});
@@ -64,7 +64,7 @@ TEST(DensityMap, MatchesFullRecomputationAfterEveryUpdate) {
 
       const auto expected = labels_by_definition(map.cloud().positions, 0.12, threshold);
       ASSERT_EQ(map.labels(), expected) << "batch " << batch << ", k " << threshold;
-      // The reported changes lead from the old set of frontiers to the new one.
+      // The reported changes transform the old frontiers into the new ones.
       const auto frontiers_now = frontiers(expected);
       std::vector<std::uint32_t> lost, won;
       std::set_difference(frontiers_before.begin(), frontiers_before.end(), frontiers_now.begin(),
@@ -79,19 +79,21 @@ TEST(DensityMap, MatchesFullRecomputationAfterEveryUpdate) {
   }
 }
 
-// A point can turn core through new points that its neighbour's neighbours never came near.
+// A new point can turn a neighbour into a core point. This changes the labels of that neighbour's
+// neighbours, which may have no new point nearby.
 TEST(DensityMap, UpdatesLabelsTwoHopsFromNewPoints) {
   DensityMap map({.radius = 1.0, .core_threshold = 4, .spacing = 0.01});
-  // A chain: 0 - 1 - 2, and points that make 1 core only when 3 and 4 arrive near it alone.
+  // A chain 0 - 1 - 2. Point 1 becomes core only when 3 and 4 arrive, which are close to 1 alone.
   map.insert(std::vector<Vector3f>{{0, 0, 0}, {0.9F, 0, 0}, {-0.5F, 0, 0}}, 0);
   map.relabel();
   map.insert(std::vector<Vector3f>{{1.6F, 0.3F, 0}, {1.6F, -0.3F, 0}}, 1);
   map.relabel();
   EXPECT_EQ(map.label(1), PointLabel::core);
-  EXPECT_EQ(map.label(0), PointLabel::frontier);  // beside core 1 and outlier 2, nothing new near
+  // Next to core 1 and outlier 2, without new points nearby.
+  EXPECT_EQ(map.label(0), PointLabel::frontier);
 }
 
-// Trap T2 of the specification: fewer than four leaves no room for a frontier.
+// Trap T2 of the specification: with a threshold below 4 there cannot be frontiers.
 TEST(DensityMap, HasNoFrontiersForCoreThresholdBelowFour) {
   DensityMap three({.radius = 0.12, .core_threshold = 3, .spacing = 0.02});
   DensityMap four({.radius = 0.12, .core_threshold = 4, .spacing = 0.02});
@@ -106,7 +108,7 @@ TEST(DensityMap, HasNoFrontiersForCoreThresholdBelowFour) {
   EXPECT_FALSE(frontiers(four.labels()).empty());
 }
 
-// Trap T3: the order of a scan's points decides which are kept, but never a label.
+// Trap T3: the order of points in a scan decides which points are kept, but never a label.
 TEST(DensityMap, LabelsPointsIndependentlyOfOrder) {
   auto points = tests::noisy_sphere(800, 0.05, 9);
   DensityMap forwards({.radius = 0.1, .core_threshold = 4, .spacing = 0.0});
@@ -123,10 +125,10 @@ TEST(DensityMap, LabelsPointsIndependentlyOfOrder) {
   EXPECT_EQ(forwards.labels(), labels);
 }
 
-// Trap T4: what was given up stays so until a point arrives within r of it.
+// Trap T4: discarded frontiers remain discarded until a point arrives within r.
 TEST(DensityMap, KeepsFrontiersDiscardedUntilNewPointIsNear) {
   DensityMap map({.radius = 1.0, .core_threshold = 5, .spacing = 0.01});
-  // Core: the first five. Frontier: 5, beside core 4 and outlier 6.
+  // Core: points 0 to 4. Frontier: point 5, next to core 4 and outlier 6.
   const std::vector<Vector3f> first = {{0, 0, 0},    {-0.3F, 0, 0}, {0, 0.3F, 0}, {0, -0.3F, 0},
                                        {0.3F, 0, 0}, {1.25F, 0, 0}, {2.2F, 0, 0}};
   map.insert(first, 0);
@@ -134,7 +136,8 @@ TEST(DensityMap, KeepsFrontiersDiscardedUntilNewPointIsNear) {
   map.discard(5);
   EXPECT_EQ(map.label(5), PointLabel::outlier);
 
-  map.insert(std::vector<Vector3f>{{1.9F, 0.9F, 0}}, 1);  // in a cell beside, but not within r
+  // In a neighbouring cell, but not within r.
+  map.insert(std::vector<Vector3f>{{1.9F, 0.9F, 0}}, 1);
   map.relabel();
   EXPECT_EQ(map.label(5), PointLabel::outlier);
 
@@ -142,7 +145,7 @@ TEST(DensityMap, KeepsFrontiersDiscardedUntilNewPointIsNear) {
   EXPECT_THAT(map.relabel().new_frontiers, testing::Contains(5));
 }
 
-// R2 of the specification: an outlier that is tested again finds itself among the outliers.
+// R2 of the specification: an outlier that is tested again finds its own label among the outliers.
 TEST(DensityMap, TurnsIsolatedOutlierIntoFrontierByLabelledRule) {
   const std::vector<Vector3f> core_group = {{0, 0, 0}, {0, 0.3F, 0}, {0, -0.3F, 0}, {0.3F, 0, 0}};
   for (const OutlierRule rule : {OutlierRule::non_core, OutlierRule::labelled}) {
@@ -170,7 +173,7 @@ TEST(DensityMap, DoesNotDependOnThreadCount) {
   }
 }
 
-// Pixels without a return lie between the others; a fifth of the rows has none at all.
+// No-return pixels are between the others. A fifth of the rows has no returns.
 TEST(DensityMap, KeepsSamePointsForImageAndList) {
   const DensityConfig config{.radius = 0.02, .core_threshold = 4, .spacing = 0.01};
   DensityMap list(config), one(config), three(config);

@@ -19,14 +19,15 @@ using Eigen::Vector3f;
 constexpr double radius = 0.1;
 const Vector3d sensor(2.0, 2.5, 2.2);
 
-/// Three numbers, z first: their order is part of a seed's meaning.
+/// Returns three random numbers, drawn in the order z, y, x. The order must not change, because
+/// results depend on the seed.
 template <typename Distribution>
 Vector3d drawn(Distribution& distribution, std::mt19937_64& random) {
   const double z = distribution(random), y = distribution(random), x = distribution(random);
   return {x, y, z};
 }
 
-/// A square of two metres in a corner of space, across an axis.
+/// Adds points of a 2 m square in the corner, perpendicular to the axis `across`.
 void add_square(int across, std::mt19937_64& random, double noise, std::vector<Vector3f>& points) {
   std::uniform_real_distribution<double> coordinate(0.0, 2.0);
   std::normal_distribution<double> error(0.0, 1.0);
@@ -37,7 +38,7 @@ void add_square(int across, std::mt19937_64& random, double noise, std::vector<V
   }
 }
 
-/// Squares across these axes, measured.
+/// Returns measured points of squares perpendicular to these axes.
 std::vector<Vector3f> squares(const std::vector<int>& across, std::uint64_t seed, double noise) {
   std::mt19937_64 random(seed);
   std::vector<Vector3f> points;
@@ -45,7 +46,7 @@ std::vector<Vector3f> squares(const std::vector<int>& across, std::uint64_t seed
   return points;
 }
 
-/// A pose that is off by 10 cm and 1 degree, some way or other.
+/// Returns a random pose error of 10 cm and 1 degree.
 Isometry3d make_error(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> number;
@@ -59,7 +60,7 @@ Isometry3d make_error(std::uint64_t seed) {
 
 struct Outcome {
   Registration found;
-  Isometry3d rest = Isometry3d::Identity();  ///< of the error, after the correction
+  Isometry3d rest = Isometry3d::Identity();  ///< remaining error after the correction
   double shift() const { return (rest * sensor - sensor).norm(); }
   double turn_deg() const { return Eigen::AngleAxisd(rest.linear()).angle() / radians_per_degree; }
 };
@@ -84,7 +85,8 @@ int observable(const Registration& found) {
       found.directions, [](const RigidDirection& d) { return d.is_observable(); }));
 }
 
-/// Also where one square is 13 cm off and the other two fit already (seed 11).
+/// This includes the case in which one square is off by 13 cm and the other two already fit (seed
+/// 11).
 TEST(Registration, CorrectsAllErrorsInCorner) {
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
     for (const double noise : {0.0, 0.01, 0.02}) {
@@ -97,16 +99,16 @@ TEST(Registration, CorrectsAllErrorsInCorner) {
   }
 }
 
-/// One wall shows how far it is away and how it is turned, and no more.
+/// One wall determines its distance and its two tilts, and nothing else.
 TEST(Registration, CorrectsOnlyObservableDirectionsOfPlane) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     const Outcome outcome = registered({2}, make_error(seed), seed, 0.01);
     ASSERT_EQ(observable(outcome.found), 3) << seed;
     const Isometry3d& rest = outcome.rest;
-    // The plane is where it was: its middle is at the same height, its normal upright.
+    // The plane is corrected: its middle has the right height and its normal is vertical.
     EXPECT_NEAR((rest * Vector3d(1.0, 1.0, 0.0)).z(), 0.0, 0.003);
     EXPECT_LT(std::acos(std::min(1.0, rest.linear()(2, 2))) / radians_per_degree, 0.1);
-    // What slides along it has stayed.
+    // The components along the plane are not corrected.
     const Vector3d moved = outcome.found.correction * outcome.found.middle - outcome.found.middle;
     EXPECT_LT(moved.head<2>().norm(), 0.005) << moved.transpose();
     EXPECT_LT(std::abs(Eigen::AngleAxisd(outcome.found.correction.linear()).axis().z()), 0.2);
@@ -117,7 +119,7 @@ TEST(Registration, CorrectsOnlyObservableDirectionsOfPlane) {
   }
 }
 
-/// In a gutter of two planes a scan slides along the edge.
+/// In the groove between two planes, the scan can slide along the edge.
 TEST(Registration, ReportsUnobservableDirectionAlongEdge) {
   const Outcome outcome = registered({0, 2}, make_error(3), 3, 0.01);
   ASSERT_EQ(observable(outcome.found), 5);

@@ -14,8 +14,8 @@ namespace {
 using Eigen::Vector3f;
 using tests::random_points;
 
-// Brute-force twin: what is kept is what comparing with every point kept before would keep,
-// whatever the width of the cells.
+// Brute-force reference: the kept points equal those of a comparison with all previously kept
+// points, for any cell width.
 TEST(SpacedPoints, MatchesComparisonWithAllPoints) {
   constexpr double spacing = 0.07;
   const std::vector<Vector3f> points = random_points(5'000, 0.3, 5);
@@ -39,8 +39,8 @@ TEST(SpacedPoints, MatchesComparisonWithAllPoints) {
   }
 }
 
-/// What is kept of scans in parts, taken up one after the other; in `reported`, what it says of
-/// them.
+/// Returns the kept points of scans that are inserted one after the other in parts. `reported`
+/// receives the reported points.
 std::vector<Vector3f> filter_scans(const std::vector<std::vector<Vector3f>>& scans,
                                    std::size_t columns, unsigned threads,
                                    std::vector<Vector3f>& reported) {
@@ -62,11 +62,11 @@ std::vector<Vector3f> filter_scans(const std::vector<std::vector<Vector3f>>& sca
   return points;
 }
 
-// Columns and threads are only a way to find out sooner.
+// Columns and threads only change the speed, not the result.
 TEST(SpacedPoints, MatchesPointwiseFilterForScans) {
   std::vector<std::vector<Vector3f>> scans = {
       random_points(4'000, 0.3, 1), {}, random_points(5'000, 0.4, 2)};
-  scans.push_back(scans.front());  // nothing new
+  scans.push_back(scans.front());  // contains no new points
   std::vector<Vector3f> in_rows;
   for (int row = 0; row < 60; ++row) {
     for (int column = 0; column < 90; ++column) {

@@ -31,7 +31,7 @@ std::vector<std::uint32_t> collect_indices(const std::vector<Neighbour>& neighbo
   return indices;
 }
 
-/// Each query beside brute force, while the cloud grows through several sizes of the forest.
+/// Compares each query with brute force while the cloud grows through several sizes of the forest.
 class SpatialIndexReference : public testing::TestWithParam<double> {};
 
 TEST_P(SpatialIndexReference, MatchesBruteForceAsIndexGrows) {
@@ -73,7 +73,7 @@ TEST(SpatialIndex, IsEmptyInitially) {
   EXPECT_TRUE(index.nearest({0, 0, 0}, 3).empty());
 }
 
-// A ball is closed: a point at exactly the radius is inside. 0.25 and its square are exact.
+// The ball is closed: a point at exactly the radius is inside. 0.25 and its square are exact.
 TEST(SpatialIndex, IncludesPointAtExactRadius) {
   SpatialIndex index(0.25);
   index.insert({1.0F, 0.0F, 0.0F});
@@ -81,7 +81,7 @@ TEST(SpatialIndex, IncludesPointAtExactRadius) {
   EXPECT_EQ(index.count_within({0.75F, 0.0F, 0.0F}, 0.25), 1U);
 }
 
-// Points on the walls between cells, on both sides of zero, where rounding would show.
+// Points on cell boundaries, on both sides of zero, where rounding errors would show.
 TEST(SpatialIndex, FindsNeighboursAcrossCellBoundaries) {
   SpatialIndex index(0.1);
   std::vector<Vector3f> points;
@@ -117,7 +117,7 @@ TEST(PointGrid, DetectsPointsNearBatch) {
   EXPECT_TRUE(grid.is_near_batch(new_point));
 }
 
-// Property: no point is within a cell's width of the stretch that is said to be empty.
+// Property: no point is within a cell width of the interval that is reported as empty.
 TEST(PointGrid, ReturnsEmptyLengthWithoutNearbyPoints) {
   PointGrid grid(0.05);
   const auto points = random_points(60, 1.0, 3);
@@ -135,7 +135,7 @@ TEST(PointGrid, ReturnsEmptyLengthWithoutNearbyPoints) {
       EXPECT_GT((origins[i] + along * direction - p).norm(), 0.05F * 0.999F);
     }
   }
-  EXPECT_GT(long_ones, 100);  // and they are worth having
+  EXPECT_GT(long_ones, 100);  // long intervals occur
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr double single_precision = 1e-5;  // of unit vectors computed from float points
+constexpr double single_precision = 1e-5;  // accuracy of unit vectors computed from float points
 
 void expect_orthonormal(const SurfaceFrame& frame) {
   EXPECT_NEAR(frame.normal.norm(), 1.0, 1e-9);
@@ -21,7 +21,7 @@ void expect_orthonormal(const SurfaceFrame& frame) {
   EXPECT_TRUE(frame.boundary.isApprox(frame.normal.cross(frame.outward), 1e-9));
 }
 
-// The edge of a strip in the plane z = 0: the surface is at x < 0, so outwards is +x.
+// Edge of a strip in the plane z = 0. The surface is at x < 0, so +x points outwards.
 const std::vector<Vector3f> plane_edge = {
     {0, 0, 0}, {-1, 0.5F, 0}, {-1, -0.5F, 0}, {-2, 0.1F, 0}, {-2, -0.1F, 0}};
 
@@ -32,7 +32,7 @@ TEST(SurfaceFrame, PointsToSensorAndOutwardFromMeasuredSide) {
   EXPECT_TRUE(frame.outward.isApprox(Vector3d::UnitX(), single_precision));
 }
 
-// Trap T6: the normal is on the free side.
+// Trap T6: the normal points to the free side.
 TEST(SurfaceFrame, FlipsNormalWithSensor) {
   const SurfaceFrame frame = surface_frame({0, 0, 0}, plane_edge, {3, 0, -9});
   EXPECT_TRUE(frame.normal.isApprox(-Vector3d::UnitZ(), single_precision));
@@ -72,7 +72,7 @@ TEST(SurfaceFrame, FacesSensorForTooFewOrIdenticalPoints) {
   }
 }
 
-// A point amid its neighbours has no outer side; the axis of the middle spread stands in.
+// A point in the centre of its neighbours has no outer side. The second principal axis is used.
 TEST(SurfaceFrame, UsesMiddleAxisForCentredPoint) {
   const std::vector<Vector3f> centred = {{0, 0, 0}, {2, 0, 0}, {-2, 0, 0}, {0, 1, 0}, {0, -1, 0}};
   const SurfaceFrame frame = surface_frame({0, 0, 0}, centred, {0, 0, 5});

@@ -71,7 +71,7 @@ TEST(Camera, RejectsFieldOfViewOf180Degrees) {
   }
 }
 
-// Known answers: the paper's formula at its published settings (spec see.md §1.3).
+// Known values: the paper's formula with its published settings (spec see.md §1.3).
 TEST(ViewDistance, MatchesPublishedSettings) {
   const Camera d435(CameraConfig{});
   EXPECT_NEAR(view_distance(d435, 146'000), 1.980, 5e-4);

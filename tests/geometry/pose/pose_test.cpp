@@ -24,10 +24,10 @@ TEST(CameraPose, RoundTripsViewAndIsRotation) {
 
 TEST(CameraPose, KeepsImageTopUp) {
   const Eigen::Isometry3d pose = camera_pose({{0, 0, 0}, Vector3d(0, 1, 0)});
-  EXPECT_TRUE((pose.linear() * Vector3d(1, 0, 0)).isApprox(Vector3d(1, 0, 0)));   // right: east
-  EXPECT_TRUE((pose.linear() * Vector3d(0, 1, 0)).isApprox(Vector3d(0, 0, -1)));  // down
+  EXPECT_TRUE((pose.linear() * Vector3d(1, 0, 0)).isApprox(Vector3d(1, 0, 0)));   // right is east
+  EXPECT_TRUE((pose.linear() * Vector3d(0, 1, 0)).isApprox(Vector3d(0, 0, -1)));  // down is -z
   const Eigen::Isometry3d nadir = camera_pose({{0, 0, 0}, Vector3d(0, 0, -1)});
-  EXPECT_TRUE((nadir.linear() * Vector3d(0, -1, 0)).isApprox(Vector3d(0, 1, 0)));  // top: north
+  EXPECT_TRUE((nadir.linear() * Vector3d(0, -1, 0)).isApprox(Vector3d(0, 1, 0)));  // top is north
 }
 
 TEST(AnyOrthogonal, IsUnitVectorOrthogonalToAxis) {

@@ -10,7 +10,7 @@ namespace {
 using Eigen::Vector2d;
 
 const std::vector<Vector2d> square = {{0, 0}, {10, 0}, {10, 10}, {0, 10}};
-/// A notch whose tip points down, so that the ray from many a point meets a corner.
+/// Polygon with a notch that points down, so that rays from many points hit a corner.
 const std::vector<Vector2d> notched = {{0, 0}, {8, 0}, {8, 8}, {4, 2}, {0, 8}};
 
 std::vector<Vector2d> reversed(std::vector<Vector2d> polygon) {
@@ -18,13 +18,15 @@ std::vector<Vector2d> reversed(std::vector<Vector2d> polygon) {
   return polygon;
 }
 
-/// What `notched` is, by inequalities: the square without the open triangle above the notch's tip.
+/// Tests for the polygon `notched` by inequalities: the square without the open triangle above the
+/// tip of the notch.
 bool is_in_notched(const Vector2d& p) {
   const bool is_in_square = p.x() >= 0 && p.x() <= 8 && p.y() >= 0 && p.y() <= 8;
   return is_in_square && p.y() - 2 <= 1.5 * std::abs(p.x() - 4);
 }
 
-// Coordinates are multiples of 1/2: every product is exact, so the border is met to the bit.
+// Coordinates are multiples of 1/2. All products are exact, so points on the border are classified
+// exactly.
 TEST(Contains, MatchesInequalitiesInsideOutsideAndOnBorder) {
   for (const auto& polygon : {notched, reversed(notched)}) {
     for (int i = -4; i <= 20; ++i) {
@@ -43,7 +45,7 @@ TEST(Contains, IncludesPointsOnEveryEdge) {
       EXPECT_TRUE(contains(polygon, p)) << p.transpose();
     }
     EXPECT_FALSE(contains(polygon, Vector2d(10.001, 5)));
-    EXPECT_FALSE(contains(polygon, Vector2d(12, 10)));  // in line with an edge
+    EXPECT_FALSE(contains(polygon, Vector2d(12, 10)));  // collinear with an edge
   }
 }
 
@@ -53,7 +55,7 @@ TEST(Prism, ContainsItsFloorAndCeiling) {
   EXPECT_TRUE(contains(prism, {10, 10, 10}));
   EXPECT_FALSE(contains(prism, {5, 5, 10.001}));
   EXPECT_FALSE(contains(prism, {5, 5, -0.001}));
-  EXPECT_TRUE(contains(Prism{.name = "", .footprint = square}, {5, 5, 1e6}));  // unbounded
+  EXPECT_TRUE(contains(Prism{.name = "", .footprint = square}, {5, 5, 1e6}));  // unbounded height
 }
 
 }  // namespace

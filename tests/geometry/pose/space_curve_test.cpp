@@ -19,7 +19,7 @@ TEST(SpaceCurve, VisitsCellsOctantByOctant) {
   EXPECT_EQ(grid.key({2.5F, 3.5F, 0.5F}), 8U + 16U + 2U);
 }
 
-// Property: each point once, keys never falling, equal ones as they were.
+// Property: each point occurs once, keys are ascending, and equal keys keep their order.
 TEST(SpaceCurve, SortsPointsByKeyAndIndex) {
   std::mt19937_64 random(1);
   std::uniform_int_distribution<int> coordinate(0, 40);

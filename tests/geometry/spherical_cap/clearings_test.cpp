@@ -23,17 +23,18 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Directions all over the sphere, so that the largest empty cap is small; more than the few with
-/// which global caps are found before anything is given up.
+/// Directions distributed over the whole sphere, so that the largest empty cap is small. There are
+/// more than the few with which global caps start before they discard any.
 enum class Spread {
   random,
-  jittered,      // about as far from each other, as samplers make them
-  denser_north,  // one half of the sphere has ten times as many
-  rows,          // of latitude: many on common planes, many equal caps, crowds at the poles
-  spiral,        // nearly all caps equal
+  jittered,      // roughly equidistant, as samplers create them
+  denser_north,  // one hemisphere has ten times the density
+  // Rows of latitude: many coplanar directions, many equal caps, clusters at the poles.
+  rows,
+  spiral,  // nearly all caps are equal
   make_cube_faces,
-  thrice,       // each three times
-  off_by_1e_6,  // of lengths as far from 1 as they may be
+  thrice,       // each direction three times
+  off_by_1e_6,  // lengths with the maximum deviation from 1
 };
 constexpr Spread all_spreads[] = {Spread::random, Spread::jittered,   Spread::denser_north,
                                   Spread::rows,   Spread::spiral,     Spread::make_cube_faces,
@@ -104,7 +105,8 @@ struct Facet {
   double offset;
 };
 
-/// Of the hull of all directions, by CGAL. A facet so thin that its normal is rounding is left out.
+/// Returns the facets of the hull of all directions, computed by CGAL. Facets that are too thin for
+/// a reliable normal are skipped.
 std::vector<Facet> hull_facets(const Directions& directions) {
   using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
   std::vector<Kernel::Point_3> points;
@@ -139,7 +141,8 @@ bool is_in_a_part(const Clearings& clearings, const Vector3d& s) {
 class EvenSphere : public testing::TestWithParam<Spread> {};
 INSTANTIATE_TEST_SUITE_P(Spreads, EvenSphere, testing::ValuesIn(all_spreads));
 
-// Wherever a search starts: asking for caps that there are not, knowing little, or the answer.
+// The result does not depend on the start of the search: caps that do not exist, little
+// information, or the solution.
 TEST_P(EvenSphere, HasAllClearCapsInsideClearings) {
   std::mt19937_64 random(1);
   for (int trial = 0; trial < 3; ++trial) {
@@ -172,13 +175,13 @@ TEST_P(EvenSphere, MatchesFullHullForLargestCap) {
     const auto found = clearest_direction(occluded, Vector3d::UnitX(), {CapPolicy::global});
     ASSERT_TRUE(found);
     EXPECT_NEAR(found->cosine, h(occluded, found->direction), 1e-12);
-    // A cap within cap_tolerance of the largest is as good.
+    // A cap within cap_tolerance of the largest is accepted.
     EXPECT_NEAR(found->cosine, smallest_offset(hull_facets(occluded)), 2.0 * cap_tolerance);
   }
 }
 
-// Among all that tie with the largest: none of the hull's facets is nearer to the clear direction
-// than the one found, by more than the tolerance.
+// Among all caps that equal the largest within the tolerance, no hull facet is closer to the clear
+// direction than the result.
 TEST_P(EvenSphere, SelectsCapNearestToClearDirectionWhenEqual) {
   std::mt19937_64 random(3);
   const Directions occluded = spread_out(GetParam(), random);
@@ -220,7 +223,8 @@ TEST(Clearings, AreWholeSphereForManyEqualCaps) {
 TEST(Clearings, IntersectCapsThatReachThem) {
   const Clearings clearings{{{Vector3d::UnitX(), 0.1}, {Vector3d::UnitZ(), 0.1}}, 0.9};
   const auto cap_at = [](double angle) {
-    return Vector3d(std::cos(angle), std::sin(angle), 0.0);  // of radius 0.2, from the first part
+    // A cap of chord radius 0.2, at this angle from the first clearing.
+    return Vector3d(std::cos(angle), std::sin(angle), 0.0);
   };
   const double cosine = 1.0 - 0.5 * 0.2 * 0.2;
   const auto chord_angle = [](double chord) { return 2.0 * std::asin(0.5 * chord); };

@@ -27,7 +27,7 @@ void expect_equal_to_brute_force(const std::vector<Vector3d>& directions, const 
   EXPECT_NE(std::find(directions.begin(), directions.end(), nearest.direction), directions.end());
 }
 
-// Sets from one direction to enough for the finest grid, spread out and in a tight bundle.
+// Sets from one direction to enough for the finest grid, both spread out and in a narrow bundle.
 TEST(DirectionIndex, MatchesBruteForce) {
   std::mt19937_64 random(1);
   for (const int count : {1, 2, 7, 100, 3000, 60'000}) {
@@ -47,7 +47,7 @@ TEST(DirectionIndex, MatchesBruteForce) {
   }
 }
 
-// Coordinates of exactly 1 and just above it lie on the rim of the grid.
+// Coordinates of exactly 1 and slightly above are at the edge of the grid.
 TEST(DirectionIndex, MatchesBruteForceForAxes) {
   std::vector<Vector3d> axes;
   for (int axis = 0; axis < 3; ++axis) {

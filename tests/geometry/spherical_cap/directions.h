@@ -1,4 +1,4 @@
-/// What tests of the largest empty cap have in common.
+/// Common parts of the tests of the largest empty cap.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ inline Eigen::Vector3d random_direction(std::mt19937_64& random) {
   return Eigen::Vector3d{coordinate(random), coordinate(random), coordinate(random)}.normalized();
 }
 
-/// The largest cosine between `s` and any of them.
+/// Returns the largest cosine between `s` and any direction in `occluded`.
 inline double h(const Directions& occluded, const Eigen::Vector3d& s) {
   double largest = -1.0;
   for (const Eigen::Vector3d& q : occluded) largest = std::max(largest, q.dot(s));

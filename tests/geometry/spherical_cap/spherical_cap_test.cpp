@@ -21,11 +21,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-// The exact methods compute with unit vectors in double precision; facets of well-spread points
-// lose at most a few digits of 1e-16.
+// The exact methods compute with unit vectors in double precision. Facets of well-distributed
+// points lose at most a few digits of 1e-16.
 constexpr double rounding = 1e-12;
 
-/// h(s), or something above `enough` if h(s) is; sooner.
+/// Returns h(s). If h(s) exceeds `enough`, returns any value above `enough`, which is faster.
 double h_up_to(const Directions& occluded, const Vector3d& s, double enough) {
   double largest = -1.0;
   for (const Vector3d& q : occluded) {
@@ -44,7 +44,7 @@ Directions tetrahedron() {
   return {{a, a, a}, {a, -a, -a}, {-a, a, -a}, {-a, -a, a}};
 }
 
-/// `count` directions at the angle `polar` from +z.
+/// Returns `count` directions at the angle `polar` from +z.
 Directions ring(double polar, int count) {
   Directions directions;
   for (int i = 0; i < count; ++i) {
@@ -68,7 +68,7 @@ Directions random_set(Kind kind, int count, std::mt19937_64& random) {
         (q.dot(centres[0]) > 0.8 || q.dot(centres[1]) > 0.9 || q.dot(centres[2]) > 0.95)) {
       continue;
     }
-    // Degenerate: many equal directions, and many on common planes.
+    // Degenerate case: many equal and many coplanar directions.
     if (kind == Kind::grid) q = (4.0 * q).array().round().matrix().normalized();
     if (q.allFinite()) set.push_back(q);
   }
@@ -151,7 +151,7 @@ TEST_P(ExactCap, IsNearestOrthogonalDirectionForAntipodalPair) {
   const auto found = cap({q, -q, q, -q}, clear);
   EXPECT_NEAR(found.cosine, 0.0, rounding);
   EXPECT_LT((found.direction - (clear - clear.dot(q) * q).normalized()).norm(), rounding);
-  // Without a nearest one, any will do.
+  // All directions on the great circle are equally good.
   EXPECT_NEAR(cap({q, -q}, q).direction.dot(q), 0.0, rounding);
 }
 
@@ -190,7 +190,7 @@ TEST_P(ExactCap, IsLocalOptimum) {
   }
 }
 
-// The answer turns with its question. The tolerance is that of the tie rules, which none of these
+// The result rotates with its input. The tolerance is that of the tie rules, which none of these
 // sets should need.
 TEST_P(ExactCap, RotatesWithDirections) {
   std::mt19937_64 random(8);
@@ -222,8 +222,8 @@ TEST_P(ExactCap, IsSmallOnDenseSphere) {
   EXPECT_GT(found.cosine, std::cos(0.06));  // the mean spacing is 0.025 rad
 }
 
-// Directions that all but lie in one plane with the origin: it is next to the boundary of their
-// hull. Cosines up to 1e-6 count as equal (cap_tolerance), so the pole is found to that.
+// Directions that are almost in one plane with the origin, which is then next to the boundary of
+// their hull. Cosines within 1e-6 count as equal (cap_tolerance), so the pole has this accuracy.
 TEST_P(ExactCap, IsStableWhenOriginIsNextToHullBoundary) {
   std::mt19937_64 random(11);
   for (const double thickness : {0.0, 1e-16, 1e-12, 1e-9, 1e-7, 1e-5}) {
@@ -235,7 +235,7 @@ TEST_P(ExactCap, IsStableWhenOriginIsNextToHullBoundary) {
   }
 }
 
-/// The offset of the full hull's facet nearest to the origin.
+/// Returns the offset of the facet nearest to the origin in the full hull.
 double smallest_facet_offset(const Directions& occluded) {
   using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
   std::vector<Kernel::Point_3> points;
@@ -254,7 +254,7 @@ double smallest_facet_offset(const Directions& occluded) {
   return smallest;
 }
 
-// CGAL's hull of all directions, and a dense search over the sphere, are independent of our method.
+// Independent references: CGAL's hull of all directions, and a dense search over the sphere.
 TEST(GlobalCap, MatchesFullHullAndDenseSearch) {
   std::mt19937_64 random(12);
   Directions grid;
@@ -266,10 +266,10 @@ TEST(GlobalCap, MatchesFullHullAndDenseSearch) {
     ASSERT_TRUE(found);
     EXPECT_NEAR(found->cosine, h(occluded, found->direction), rounding);
     for (const Vector3d& s : grid) {
-      if (s.dot(found->direction) > 0.999) continue;  // the found cap's own surroundings
+      if (s.dot(found->direction) > 0.999) continue;  // neighbourhood of the result
       ASSERT_GE(h_up_to(occluded, s, found->cosine), found->cosine - 1e-6) << trial;
     }
-    // Below zero the origin is outside the hull, and the answer is no facet.
+    // Below zero the origin is outside the hull, and the result is not a facet.
     if (found->cosine > 1e-6) {
       EXPECT_NEAR(found->cosine, smallest_facet_offset(occluded), 1e-6) << trial;
     }
@@ -283,9 +283,9 @@ TEST(GlobalCap, SelectsCapNearestToClearDirectionWhenEqual) {
   }
 }
 
-// The program ends where a constraint may be violated by 1e-3. As |n| = h at its optimum, that
-// leaves h uncertain by 1e-3 / h. It is a local method with steps of its own making, so now and
-// then it finds another, larger cap: in 2 of 6,400 such sets when LOCAL was made.
+// The program ends when constraints are violated by at most 1e-3. As |n| = h at its optimum, h is
+// uncertain by 1e-3 / h. It is a local method with its own step sizes and occasionally finds
+// another, larger cap: in 2 of 6,400 such sets.
 TEST(LocalCap, IsNotWorseThanNonlinearProgram) {
   std::mt19937_64 random(13);
   int compared = 0, better = 0;
@@ -304,8 +304,8 @@ TEST(LocalCap, IsNotWorseThanNonlinearProgram) {
   EXPECT_GT(better, compared / 10);
 }
 
-// The paper's basin: a clear hole is not left for a larger one on the far side, where the object's
-// unseen inside may be.
+// The paper's basin: the search does not leave a clear hole for a larger one on the far side, where
+// the unobserved interior of the object may be.
 TEST(LocalCap, StaysInHoleAroundClearDirection) {
   std::mt19937_64 random(14);
   const Vector3d near = Vector3d::UnitZ(), far(std::sin(2.2), 0, std::cos(2.2));

@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Coordinates are of the order of 1 and distances are square roots of sums of products of them.
+// Coordinates are of the order of 1, and distances are square roots of sums of their products.
 constexpr double rounding = 1e-9;
 
 Vector3d random_point(std::mt19937_64& random, double range) {
@@ -37,7 +37,8 @@ Mesh random_soup(std::mt19937_64& random, int triangles) {
   return mesh;
 }
 
-/// Distance to a triangle: to the plane if the foot is inside, otherwise to the nearest edge.
+/// Returns the distance to a triangle: to the plane if the foot point is inside, otherwise to the
+/// nearest edge.
 double distance_to_triangle(const Vector3d& p, const Vector3d& a, const Vector3d& b,
                             const Vector3d& c) {
   const Vector3d normal = (b - a).cross(c - a).normalized();
@@ -78,7 +79,7 @@ TEST(MeshDistance, MatchesBruteForceForPoints) {
   }
 }
 
-/// Holds distances of many at once against those of each, with every instruction set.
+/// Compares batched distances with distances of single points, with each instruction set.
 void expect_single_point_distances(const Mesh& mesh, const std::vector<Eigen::Vector3f>& points) {
   const MeshDistance surface(mesh);
   for (const InstructionSet widest : instruction_sets()) {
@@ -91,7 +92,7 @@ void expect_single_point_distances(const Mesh& mesh, const std::vector<Eigen::Ve
   }
 }
 
-// However they lie: in the order of a scan, jumping about, far away, on corners and edges.
+// Points in scan order, in random order, far away, and on corners and edges.
 TEST(MeshDistance, MatchesSinglePointDistancesForManyPoints) {
   std::mt19937_64 random(2);
   const Mesh mesh = random_soup(random, 200);
@@ -115,7 +116,7 @@ TEST(MeshDistance, MatchesSinglePointDistancesForFewPoints) {
   }
 }
 
-// Boxes are kept in single precision, which rounds by millimetres here; distances are not.
+// Boxes have single precision, which rounds to millimetres here. Distances must not be affected.
 TEST(MeshDistance, IsExactFarFromOrigin) {
   std::mt19937_64 random(3);
   Mesh mesh = random_soup(random, 300);
@@ -128,7 +129,7 @@ TEST(MeshDistance, IsExactFarFromOrigin) {
   }
 }
 
-// Needles a metre long and a nanometre thick are as near as the edges that they are made of.
+// The distance of a needle triangle, 1 m long and 1 nm thick, equals that of its edges.
 TEST(MeshDistance, MatchesEdgeDistancesForNeedleTriangles) {
   std::mt19937_64 random(4);
   Mesh needles;
@@ -163,7 +164,7 @@ TEST(MeshDistance, ReturnsFirstOfEquallyNearTriangles) {
   EXPECT_EQ(MeshDistance(fan).closest({-0.25, 0, 1}).triangle, 1U);
 }
 
-// Against dense samples: between them the distance changes by half their spacing at most.
+// Compares with dense samples: between them the distance changes by at most half the spacing.
 TEST(MeshDistance, DetectsPathsThatKeepDistance) {
   std::mt19937_64 random(5);
   const Mesh mesh = random_soup(random, 60);

@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// An octahedron of radius 1 about `centre`, facing outward.
+/// Returns an octahedron of radius 1 around `centre`, oriented outward.
 Mesh octahedron(const Vector3d& centre) {
   Mesh mesh{
       {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}},
@@ -45,7 +45,7 @@ TEST(MeshRepair, RemovesOnlyTrianglesWithoutArea) {
   EXPECT_EQ(mesh.triangles[0][2], 3U);
 }
 
-// Any turning of the triangles of separate closed bodies is undone.
+// Random flips of triangles in separate closed bodies are corrected.
 TEST(MeshRepair, OrientsRandomlyFlippedSolidsOutward) {
   std::mt19937_64 random(11);
   for (int trial = 0; trial < 20; ++trial) {
@@ -79,7 +79,7 @@ TEST(MeshRepair, SeparatesPartsAtNonManifoldEdges) {
   Mesh fan{{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {-1, 1, 0}, {-1, -1, 0}},
            {{0, 1, 2}, {0, 1, 3}, {1, 0, 4}}};
   const auto before = fan.triangles;
-  orient_outward(fan);  // three separate flat parts: there is no outside, so nothing turns
+  orient_outward(fan);  // three separate flat parts have no outside, so no triangle is flipped
   EXPECT_EQ(fan.triangles, before);
 }
 

@@ -16,7 +16,7 @@ namespace {
 using Eigen::Vector3d;
 using testing::HasSubstr;
 
-/// Two triangles in the plane z = 0: areas 0.5 and 1.5, sharing no vertex.
+/// Returns two triangles in the plane z = 0 with areas 0.5 and 1.5 and no shared vertices.
 Mesh two_triangles() {
   return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, 0, 0}, {8, 0, 0}, {5, 1, 0}},
           {{0, 1, 2}, {3, 4, 5}}};
@@ -28,7 +28,7 @@ std::string error_message(const Mesh& mesh) {
 
 TEST(Mesh, MeasuresAreaAndBoxOfUsedVertices) {
   Mesh mesh = two_triangles();
-  mesh.vertices.emplace_back(99, 99, 99);  // used by no triangle
+  mesh.vertices.emplace_back(99, 99, 99);  // not used by a triangle
   EXPECT_DOUBLE_EQ(surface_area(mesh), 2.0);
   EXPECT_EQ(bounding_box(mesh).max(), Vector3d(8, 1, 0));
 }
@@ -48,7 +48,7 @@ TEST(Mesh, KeepsOrientationUnderReflection) {
   Mesh mesh = two_triangles();
   transform(mesh, Eigen::Affine3d(Eigen::Scaling(1.0, 1.0, -1.0)));
   const SurfaceSamples samples = sample_surface(mesh, 1, 1);
-  EXPECT_GT(-samples.normals[0].z(), 0.0);  // +z before, so -z in the mirror
+  EXPECT_GT(-samples.normals[0].z(), 0.0);  // the original faces +z, so the mirrored mesh faces -z
 }
 
 TEST(Mesh, KeepsBothPartsWhenAppended) {
@@ -58,7 +58,8 @@ TEST(Mesh, KeepsBothPartsWhenAppended) {
   EXPECT_EQ(mesh.triangles[3][0], 9U);
 }
 
-// Stratified: each triangle gets its share of the samples, to within two.
+// Stratified sampling: the number of samples in each triangle is proportional to its area, within
+// two.
 TEST(SampleSurface, IsUniformInAreaAndRepeatable) {
   const SurfaceSamples samples = sample_surface(two_triangles(), 4000, 42);
   ASSERT_EQ(samples.points.size(), 4000U);
@@ -74,7 +75,7 @@ TEST(SampleSurface, IsUniformInAreaAndRepeatable) {
     }
   }
   EXPECT_NEAR(in_first, 1000, 2);
-  // Mean of a uniform sample of n: the centroid within 5 sigma/sqrt(n), sigma = sqrt(1/18).
+  // Mean of n uniform samples: the centroid within 5 sigma/sqrt(n), sigma = sqrt(1/18).
   EXPECT_LT((sum / in_first - Vector3d(1, 1, 0) / 3).norm(), 5 * std::sqrt(2.0 / 18 / 1000));
   EXPECT_EQ(sample_surface(two_triangles(), 4000, 42).points, samples.points);
   EXPECT_NE(sample_surface(two_triangles(), 4000, 43).points, samples.points);

@@ -45,7 +45,7 @@ TEST(PolygonTriangulation, CutsHolesOfBothOrientations) {
 TEST(PolygonTriangulation, FillsAreasInsideOddNumberOfRings) {
   EXPECT_DOUBLE_EQ(area(Polygon().ring(square(0, 10)).ring(square(1, 9)).ring(square(2, 8)).mesh()),
                    100.0 - 64.0 + 36.0);
-  // A hole that shares two edges with the outline leaves an L.
+  // A hole that shares two edges with the outline leaves an L shape.
   EXPECT_DOUBLE_EQ(area(Polygon().ring(square(0, 10)).ring(square(0, 5)).mesh()), 75.0);
 }
 
@@ -69,7 +69,7 @@ TEST(PolygonTriangulation, AcceptsClosedTouchingAndCrossingRings) {
   std::vector<Vector3d> closed = square(0, 3);
   closed.push_back(closed[0]);
   EXPECT_DOUBLE_EQ(area(Polygon().ring(closed).mesh()), 9.0);
-  // A bow tie: two triangles that meet where its sides cross, one larger than the other.
+  // Bow tie: two triangles of different size that meet where the sides cross.
   const Mesh bow = Polygon().ring({{0, 0, 0}, {6, 4, 0}, {6, 0, 0}, {0, 2, 0}}).mesh();
   EXPECT_NEAR(area(bow), 0.5 * 2.0 * 2.0 + 0.5 * 4.0 * 4.0, 1e-9);
 }
@@ -82,7 +82,7 @@ TEST(PolygonTriangulation, AddsNoTrianglesForRingsWithoutArea) {
   EXPECT_EQ(area(Polygon().ring({{0, 0, 0}, {1, 0, 0}, {0, nan, 0}}).mesh()), 0.0);
 }
 
-/// The area of a star-shaped polygon by the shoelace formula, an independent way.
+/// The area of a star-shaped polygon is compared with the shoelace formula.
 TEST(PolygonTriangulation, KeepsAreaOfRandomStars) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> radius(1.0, 5.0);

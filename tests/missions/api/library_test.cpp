@@ -1,4 +1,4 @@
-// Missions in the hands of another program: the same results as the program's.
+// Missions through the C++ library give the same results as the program.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -68,7 +68,8 @@ TEST_F(Library, MatchesPlanCommandByteForByte) {
   }
 }
 
-/// The planner alone, with a simulator of the test's own, goes the same way as the whole survey.
+/// The planner alone, with scans from a simulator of the test, selects the same views as a complete
+/// survey.
 TEST_F(Library, PlansSameViewsFromExternalScans) {
   const Mission mission = Mission::load(file);
   const Survey survey = plan(mission);
@@ -108,7 +109,7 @@ TEST_F(Library, SimulatesSameScansAsSurvey) {
   EXPECT_TRUE(planner->cloud().positions == survey.cloud.positions);
 }
 
-/// Half of a sheet, from a height that is known.
+/// Half of a sheet, at a known height.
 TEST_F(Library, EvaluatesCloudDistanceAndCoverage) {
   const geometry::Mesh sheet{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
   std::vector<Eigen::Vector3f> points;
@@ -120,7 +121,7 @@ TEST_F(Library, EvaluatesCloudDistanceAndCoverage) {
   const Evaluation evaluation = evaluate(points, sheet, {.distance = 0.01});
   EXPECT_NEAR(evaluation.mean, 0.003, 1e-8);
   EXPECT_NEAR(evaluation.largest, 0.003, 1e-8);
-  // The distance reaches sqrt(0.01^2 - 0.003^2) beyond the half.
+  // The distance reaches sqrt(0.01^2 - 0.003^2) beyond the measured half.
   EXPECT_NEAR(evaluation.coverage, 0.5 + 0.0095, 0.002);
   EXPECT_NEAR(evaluation.density, static_cast<double>(points.size()), 1e-6);
   EXPECT_THAT(testing_support::thrown_message([&] { evaluate({}, sheet); }),

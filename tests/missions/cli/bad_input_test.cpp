@@ -1,5 +1,4 @@
-// What users get wrong: each case must end with exit code 2, one line that says what and what to
-// do, and no results.
+// Input errors: each must give exit code 2, a one-line message with a remedy, and no results.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -16,13 +15,13 @@ using testing::HasSubstr;
 using testing::StartsWith;
 using tests::TestFolder;
 
-/// A mission or mesh that is wrong in one way, and what has to be said of it. MISSION and FOLDER
-/// in the message stand for the mission file and the folder it is in.
+/// A mission or mesh with one error, and the expected message. MISSION and FOLDER in the message
+/// stand for the mission file and its folder.
 struct BadInput {
   const char* name;
   std::string mission;
   std::string message;
-  std::string mesh_name = {};  ///< a file beside the mission
+  std::string mesh_name = {};  ///< mesh file in the same folder
   std::string mesh = {};
   std::vector<std::string> arguments = {};  ///< after "plan MISSION --out OUT"
 };
@@ -38,7 +37,7 @@ std::string with_mesh(const std::string& file) {
   return "scene: {model: " + file + "}\n" + evaluated;
 }
 
-/// A flight section, on one line.
+/// Returns a flight section in one line.
 const std::string around = "min: [-20, -20, 0], max: [20, 20, 20]";
 std::string flight_mission(const std::string& box, const std::string& more = "hold: 1") {
   return "flight: {vehicle: generic, unknown_box: {" + box + "}, " + more + "}\n";

@@ -1,4 +1,4 @@
-// skycap benchmark as a user runs it.
+// End-to-end tests of skycap benchmark.
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -38,7 +38,7 @@ class BenchmarkCommand : public testing::Test {
   Json trial(const std::string& planner, int seed) const {
     return Json::parse(read_content(item(planner, seed)))["trial"];
   }
-  /// trials.csv without its last column, the planning time.
+  /// Returns trials.csv without its last column, the planning time.
   std::string trials_without_times() const {
     std::istringstream lines(read_content(folder_.path() / "out" / "trials.csv"));
     std::string text;
@@ -55,7 +55,7 @@ class BenchmarkCommand : public testing::Test {
 TEST_F(BenchmarkCommand, WritesTablesForAllPlannersOfPaper) {
   const ProgramRun result = run("all", {"--max-views", "5"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_EQ(result.err, "");  // no progress where there is no terminal
+  EXPECT_EQ(result.err, "");  // no progress output without a terminal
   const Json json = Json::parse(read_content(folder_.path() / "out" / "results.json"));
   EXPECT_EQ(json["results"].size(), 9U);
   for (const Json& cell : json["results"]) EXPECT_EQ(cell["trials"], 2) << cell["planner"];
@@ -67,7 +67,7 @@ TEST_F(BenchmarkCommand, WritesTablesForAllPlannersOfPaper) {
 TEST_F(BenchmarkCommand, StartsAllPlannersFromSameView) {
   ASSERT_EQ(run("see,see++,oa,skycap", {"--max-views", "3"}).exit_code, 0);
   for (const int seed : {1, 2}) {
-    // The same pose and noise, and so the same first points and coverage.
+    // With equal pose and noise, the first points and their coverage are equal.
     const Json first = trial("see", seed)["coverage_after"][0];
     for (const char* planner : {"see++", "oa", "skycap"}) {
       EXPECT_EQ(trial(planner, seed)["coverage_after"][0], first) << planner;
@@ -80,7 +80,7 @@ TEST_F(BenchmarkCommand, WritesSameTablesAfterInterruption) {
   ASSERT_EQ(run("see++,oa", {"--max-views", "6"}).exit_code, 0);
   const std::string whole = trials_without_times();
   std::filesystem::remove(item("oa", 1));
-  std::ofstream(item("see++", 2)) << read_content(item("see++", 2)).substr(0, 50);  // cut off
+  std::ofstream(item("see++", 2)) << read_content(item("see++", 2)).substr(0, 50);  // truncated
   ASSERT_EQ(run("see++,oa", {"--max-views", "6"}).exit_code, 0);
   EXPECT_EQ(trials_without_times(), whole);
 }
@@ -157,7 +157,7 @@ TEST_F(BenchmarkCommand, GeneratesSceneOfFamilyForEachSeed) {
   ASSERT_EQ(manifest["entries"].size(), 2U);
   EXPECT_EQ(manifest["entries"][0]["mission"], "fences");
   EXPECT_EQ(manifest["entries"][1]["mission"], "statue");
-  // What can be seen of two scenes of a family differs, whatever the start.
+  // The visible surfaces of two scenes of a family differ, independent of the start pose.
   for (const char* family : {"fences", "statue"}) {
     const auto items = folder_.path() / "out" / "items" / family / "see";
     const Json one = Json::parse(read_content(items / "seed_1.json"));

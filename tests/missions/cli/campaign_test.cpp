@@ -1,4 +1,4 @@
-// skycap campaign as a user, and as an engine, runs it.
+// End-to-end tests of skycap campaign, as started by a user and by a scheduler.
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -34,7 +34,7 @@ using tests::run_skycap;
 using Json = nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
-/// A survey of few views in a scene that is made ready soon.
+/// Returns a mission with few views in a scene that loads quickly.
 std::string small_mission(const std::string& more = "") {
   std::string mission = tests::quick_mission(more);
   return mission.replace(mission.find("longest_side"), 0, "detail: coarse, ");
@@ -51,7 +51,7 @@ class CampaignCommand : public testing::Test {
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }
-  /// The program itself, in a process of its own.
+  /// Starts the program in a separate process.
   pid_t started(const std::string& out, const std::vector<std::string>& more) const {
     std::vector<std::string> all = words(out, more);
     all.insert(all.begin(), SKYCAP_PROGRAM);
@@ -68,7 +68,7 @@ class CampaignCommand : public testing::Test {
     ::waitpid(process, &status, 0);
     return status;
   }
-  /// All that must not depend on what ran where.
+  /// Returns all results that must not depend on the distribution of the runs.
   std::map<std::string, std::string> tables(const std::string& out) const {
     std::map<std::string, std::string> contents;
     for (const char* name : {"manifest.jsonl", "trials.csv", "table1.csv", "report.md"}) {
@@ -76,8 +76,7 @@ class CampaignCommand : public testing::Test {
     }
     return contents;
   }
-  /// The records that are there, by path; they tell how long each took, so no two runs give the
-  /// same.
+  /// Returns the run records by path. They contain durations, so they differ between executions.
   std::map<std::string, std::string> records(const std::string& out) const {
     std::map<std::string, std::string> contents;
     const fs::path items = folder_.path() / out / "items";
@@ -155,10 +154,10 @@ TEST_F(CampaignCommand, SkipsCompleteRunsAndRepeatsStaleRuns) {
   const auto before = records("out");
   ASSERT_EQ(run("out").exit_code, 0);
   EXPECT_EQ(records("out"), before);
-  // A record that is damaged, and one that other settings made.
+  // One damaged record and one record with other settings.
   const fs::path damaged = folder_.path() / "out/items/quick/plain/oa/seed_1/item.json";
   std::ofstream(damaged) << read_content(damaged).substr(0, 70);
-  std::ofstream(campaign_, std::ios::app) << "results: figures\n";  // changes no item
+  std::ofstream(campaign_, std::ios::app) << "results: figures\n";  // does not change a run
   ASSERT_EQ(run("out").exit_code, 0);
   for (const auto& [path, text] : records("out")) {
     EXPECT_EQ(text != before.at(path), path == "quick/plain/oa/seed_1/item.json") << path;
@@ -171,7 +170,7 @@ TEST_F(CampaignCommand, SkipsCompleteRunsAndRepeatsStaleRuns) {
   for (const auto& [path, text] : records("out")) EXPECT_NE(text, whole.at(path)) << path;
 }
 
-// What tasks keep for each other is not believed when it is damaged.
+// Damaged scene caches are recomputed.
 TEST_F(CampaignCommand, RecomputesDamagedSceneCache) {
   ASSERT_EQ(run("whole").exit_code, 0);
   for (const char* damage : {"", "-\n", "2\n0101", "0.5"}) {
@@ -186,7 +185,7 @@ TEST_F(CampaignCommand, RecomputesDamagedSceneCache) {
   EXPECT_EQ(tables("out"), tables("whole"));
 }
 
-// The model's content counts, not its name.
+// The content of the model matters, not its name.
 TEST_F(CampaignCommand, RepeatsRunsWhenModelContentChanges) {
   ASSERT_EQ(run_skycap({"model", "teapot", "--out", folder_ / "m.ply"}).exit_code, 0);
   const std::string mission = tests::quick_mission();
@@ -211,7 +210,7 @@ TEST_F(CampaignCommand, WritesSameTablesAfterKills) {
     std::this_thread::sleep_for(std::chrono::milliseconds(30 + random() % 250));
     ::kill(process, SIGKILL);
     const int status = wait_for_status(process);
-    // What was complete before has not been made again.
+    // Records that were complete before have not been recomputed.
     const auto now = records("part");
     for (const auto& [path, text] : complete) EXPECT_EQ(now.at(path), text) << path;
     complete = now;
@@ -276,7 +275,7 @@ TEST_F(CampaignCommand, WritesPackagesWhenRequested) {
     EXPECT_TRUE(read_content(item / name) == read_content(folder_.path() / "plan" / name)) << name;
   }
   EXPECT_EQ(Json::parse(read_content(item / "summary.json"))["seed"], 3);
-  // Without packages the item is another one, and none is left that it has not made.
+  // Without packages, the run has another checksum, and the files of the old run are removed.
   std::string figures = read_content(campaign_);
   figures = figures.substr(0, figures.find("results:"));
   std::ofstream(campaign_) << figures;
@@ -292,7 +291,7 @@ TEST_F(CampaignCommand, PrintsManifestWithoutRunning) {
   EXPECT_FALSE(fs::exists(folder_.path() / "out"));
 }
 
-// Two tasks at one item: the second is told so, or finds it complete.
+// Two tasks for one run: the second reports the lock, or finds the run complete.
 TEST_F(CampaignCommand, LocksRunFolderAgainstSecondTask) {
   const pid_t first = started("out", {"--quiet", "--index", "0"});
   const pid_t second = started("out", {"--quiet", "--index", "0"});
@@ -304,14 +303,14 @@ TEST_F(CampaignCommand, LocksRunFolderAgainstSecondTask) {
   EXPECT_EQ(records("out").size(), 1U);
 }
 
-/// A program of that name that writes its words down and says something.
+/// Writes a program that logs its arguments and prints `program_output`.
 void write_program(const fs::path& file, const std::string& program_output) {
   std::ofstream(file) << "#!/bin/sh\necho \"$@\" >> \"$0.words\"\necho '" << program_output
                       << "'\n";
   fs::permissions(file, fs::perms::owner_all);
 }
 
-// The script that Slurm is given, run by a shell with Slurm's variable.
+// The script for Slurm is run by a shell that sets Slurm's variable.
 TEST_F(CampaignCommand, WritesRunnableSlurmScripts) {
   ASSERT_EQ(run("here").exit_code, 0);
   fs::create_directory(folder_.path() / "bin");

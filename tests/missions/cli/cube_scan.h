@@ -1,4 +1,4 @@
-/// A second and a half of flight round a cube of 2 m, scanned again and again.
+/// Fixture: repeated scans during 1.5 s of flight around a cube of 2 m.
 #pragma once
 
 #include <filesystem>
@@ -14,8 +14,7 @@
 
 namespace skycap::tests {
 
-/// All results of a scan, but of scan.json without the time that the run took, and without the page
-/// of it.
+/// Returns all results of a scan, except the duration in scan.json and the HTML report.
 inline std::map<std::string, std::string> scan_results_in(const std::filesystem::path& folder) {
   std::map<std::string, std::string> results = results_in(folder, {"scan.html"});
   auto summary = nlohmann::ordered_json::parse(results.at("scan.json"));
@@ -25,7 +24,7 @@ inline std::map<std::string, std::string> scan_results_in(const std::filesystem:
   return results;
 }
 
-/// The results go into "part", and into "whole" those that they should be like.
+/// Results are written to "part", and the expected results to "whole".
 class CubeScan : public testing::Test {
  protected:
   CubeScan() {
@@ -57,7 +56,7 @@ class CubeScan : public testing::Test {
     return arguments;
   }
 
-  /// Expects in both folders the same.
+  /// Expects equal results in both folders.
   void expect_same_results() const {
     const auto part = scan_results_in(folder_ / "part"), whole = scan_results_in(folder_ / "whole");
     for (const auto& [name, content] : whole) {

@@ -1,5 +1,5 @@
-// Faults that once lost results or said nothing; docs/development/testing.md lists the test of
-// each.
+// Regression tests for faults that lost results or were not reported. docs/development/testing.md
+// lists the tests by class.
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -36,7 +36,7 @@ std::string rejection(const std::vector<std::string>& arguments) {
   return run.err;
 }
 
-// Class 13: a name that is no UTF-8 reaches summary.json, the route files and the page.
+// Class 13: a name that is not UTF-8 is used in summary.json, the route files and the report.
 TEST(FaultClasses, KeepsSurveyWithNonUtf8Name) {
   const TestFolder folder;
   const std::string mission = folder.write("\xff\xfe.yaml", tests::flight_mission());
@@ -47,7 +47,7 @@ TEST(FaultClasses, KeepsSurveyWithNonUtf8Name) {
   EXPECT_TRUE(fs::exists(folder / "out/mission.plan"));
 }
 
-// Class 14: folders and links that lead nowhere, in place of files.
+// Class 14: folders and link loops instead of files.
 TEST(FaultClasses, ReportsFoldersAndLinkLoopsInsteadOfFiles) {
   const TestFolder folder;
   const std::string mission = folder.write("m.yaml", tests::quick_mission());
@@ -72,7 +72,7 @@ TEST(FaultClasses, ReportsFoldersAndLinkLoopsInsteadOfFiles) {
       HasSubstr(loops));
 }
 
-// Of the same kind: who opens a pipe waits for ever.
+// Class 14: opening a pipe for reading would block forever.
 TEST(FaultClasses, RejectsPipeInsteadOfFreeSpaceFile) {
   const TestFolder folder;
   const std::string mission = folder.write("m.yaml", tests::flight_mission());
@@ -84,7 +84,7 @@ TEST(FaultClasses, RejectsPipeInsteadOfFreeSpaceFile) {
               HasSubstr("free_space.bin: is a device or a pipe"));
 }
 
-/// The user's cache is elsewhere for as long as this lives.
+/// Redirects the user's cache during the lifetime of the object.
 // NOLINTBEGIN(concurrency-mt-unsafe): no other thread asks meanwhile
 class OtherCache {
  public:
@@ -107,7 +107,7 @@ class OtherCache {
 };
 // NOLINTEND(concurrency-mt-unsafe)
 
-// Class 17: what lies in the cache is not believed as it is.
+// Class 17: cached data is validated.
 TEST(FaultClasses, RecomputesCorruptedCache) {
   const TestFolder folder;
   const OtherCache cache(folder.path() / "cache");
@@ -131,11 +131,11 @@ TEST(FaultClasses, RecomputesCorruptedCache) {
     geometry::write_file(entry.path(), std::string(read_content(entry.path()).size(), '5'));
     ++corrupted;
   }
-  ASSERT_EQ(corrupted, 2U);  // what is visible, and what attainable
+  ASSERT_EQ(corrupted, 2U);  // visible surface and attainable coverage
   EXPECT_EQ(could_be_covered(), first);
 }
 
-// Class 20: two programs that write one file, each of them whole.
+// Class 20: two processes write the same file. Each writes it completely.
 TEST(FaultClasses, AllowsTwoWritersOfOneFile) {
   const TestFolder folder;
   const fs::path file = folder.path() / "a.png";
@@ -158,7 +158,7 @@ TEST(FaultClasses, AllowsTwoWritersOfOneFile) {
   EXPECT_TRUE(content == one || content == two);
 }
 
-/// A file of so many blanks, compressed.
+/// Returns a compressed file of blanks with this uncompressed size.
 std::string blanks(const TestFolder& folder, const std::string& name, std::size_t mebibytes) {
   const gzFile file = gzopen((folder / name).c_str(), "wb1");
   const std::string chunk(std::size_t{1} << 20, ' ');
@@ -170,7 +170,7 @@ std::string blanks(const TestFolder& folder, const std::string& name, std::size_
   return folder / name;
 }
 
-// What is made of a file takes a multiple of its bytes: 4 GB of a cloud of 1 GiB, once.
+// Reading a file needs a multiple of its size: 4 GB for a cloud of 1 GiB.
 TEST(FaultClasses, RejectsFilesLargerThanMemoryLimits) {
   const TestFolder folder;
   EXPECT_THAT(rejection({"model", blanks(folder, "m.obj.gz", 257)}),

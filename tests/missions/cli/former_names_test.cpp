@@ -1,4 +1,4 @@
-// Names of version 0.1 on the command line and in campaigns and districts.
+// Names of version 0.1 in command lines, campaigns and districts.
 #include "missions/config/former_names.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// What has once crashed the program, made it hang, or lost results: one test for each class.
+// Regression tests for inputs that crashed or blocked the program, or lost results. One test for
+// each class.
 #include <algorithm>
 #include <chrono>
 #include <csignal>
@@ -33,7 +34,7 @@ using tests::read_content;
 using tests::run_skycap;
 using tests::TestFolder;
 
-/// The one line that the program refuses its arguments with.
+/// Returns the one-line error message for these arguments.
 std::string rejection(const std::vector<std::string>& arguments) {
   const tests::ProgramRun run = run_skycap(arguments);
   EXPECT_EQ(run.exit_code, 2) << run.err << run.out;
@@ -210,7 +211,7 @@ TEST(HostileInput, RejectsReconstructionOfCollinearPoints) {
   }
 }
 
-/// The exit code of the program, told to end soon after it began; -1 if it does not.
+/// Interrupts the program soon after its start and returns its exit code, or -1 if it does not end.
 int exit_code_after_interruption(const std::vector<std::string>& arguments) {
   std::vector<char*> words{const_cast<char*>(SKYCAP_PROGRAM)};
   for (const std::string& word : arguments) words.push_back(const_cast<char*>(word.c_str()));
@@ -242,7 +243,8 @@ TEST(HostileInput, StopsAttainableCoverageOnCtrlC) {
   const TestFolder folder;
   const std::string file = folder.write("m.yaml", quick_mission());
   const config::MissionSetup mission = config::read_mission(
-      file, {{"--set", "evaluation.attainable_views", "7"}});  // whose ceiling no cache holds
+      // Its attainable coverage is not in the cache.
+      file, {{"--set", "evaluation.attainable_views", "7"}});
   const evaluation::SurveyScene scene(mission.simulation, folder.path(), 0);
   std::stop_source stopped;
   stopped.request_stop();
@@ -252,7 +254,7 @@ TEST(HostileInput, StopsAttainableCoverageOnCtrlC) {
             std::nullopt);
 }
 
-/// A disk that is full.
+/// Stream buffer that behaves like a full disk.
 class FullBuffer : public std::streambuf {};
 
 TEST(HostileInput, FailsWhenResultsCannotBePrinted) {
@@ -273,7 +275,7 @@ TEST(HostileInput, SkipsFinishedTrials) {
         false, stop);
   };
   ASSERT_EQ(trials("2", "1").exit_code, 0);
-  const std::string before = read_content(folder / "out/trials.csv");  // with planning times
+  const std::string before = read_content(folder / "out/trials.csv");  // including planning times
   ASSERT_EQ(trials("3", "1").exit_code, 0);
   EXPECT_TRUE(read_content(folder / "out/trials.csv").starts_with(before));
   std::stop_source stopped;

@@ -40,7 +40,7 @@ TEST(OpenSurvey, StartsAtSameViewAsPlanInScene) {
   EXPECT_EQ(identity_in(folder)["seed"], 7);
 }
 
-/// So that a survey is not continued in another scene.
+/// Prevents resuming a survey in a different scene.
 TEST(OpenSurvey, KeepsSceneSphereInJournal) {
   const tests::TestFolder folder, other;
   const config::MissionSetup setup = make_setup(tests::quick_mission());
@@ -73,7 +73,7 @@ TEST(OpenSurvey, StartsAtConfiguredViewWithoutScene) {
   EXPECT_FALSE(open_survey(make_setup(rest), "", left_open.path())->proposal().view);
 }
 
-/// Not where the view was wanted, and with the noise of the scan's number.
+/// The pose differs from the requested view. The noise depends on the scan number.
 TEST(SimulatedSensor, MeasuresFromActualVehiclePose) {
   const config::MissionSetup setup = make_setup(tests::quick_mission());
   const geometry::View requested{{3, 0, 0}, {-1, 0, 0}}, actual_view{{0, 2, 0.5}, {0, -1, 0}};

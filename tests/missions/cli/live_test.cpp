@@ -1,4 +1,4 @@
-// skycap next and skycap finish as a user runs them.
+// End-to-end tests of skycap next and skycap finish.
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -33,21 +33,21 @@ constexpr const char* live_mission =
     "          scene_box: {min: [-1, -1, -0.2], max: [1, 1, 1.5]}}\n"
     "evaluation: {coverage_distance: 0.03}\n";
 
-/// A metre long.
+/// Returns a teapot with a length of 1 m.
 geometry::Mesh small_teapot() {
   geometry::Mesh mesh = sim::builtin_model("teapot", {.detail = sim::LevelOfDetail::coarse});
   for (Eigen::Vector3d& vertex : mesh.vertices) vertex /= 6.434;
   return mesh;
 }
 
-/// What a page shows.
+/// Returns the data in an HTML report.
 json page_data(const fs::path& page) {
   const std::string text = tests::read_content(page), begin = "id=\"data\">";
   const std::size_t at = text.find(begin) + begin.size();
   return json::parse(text.substr(at, text.find("</script>", at) - at));
 }
 
-// Nothing is simulated, and what the file lacks for a flight is said.
+// A live mission is not simulated. Missing flight settings are reported.
 TEST(CheckLive, SaysWhatFollowsFromTheMission) {
   const TestFolder folder;
   std::ofstream(folder / "barn.yaml") << live_mission;
@@ -101,8 +101,8 @@ class LiveCommands : public testing::Test {
     return json::parse(run.out);
   }
 
-  /// A depth image, as a sensor that knows nothing of Skycap would write it: the teapot with
-  /// millimetres for steps. Returns the arguments that hand it on.
+  /// Writes a depth image of the teapot in millimetres, as a real sensor does. Returns the
+  /// arguments for `next`.
   std::vector<std::string> measured(const geometry::View& view, int number) const {
     const sim::DepthCamera camera(config::parse_mission(live_mission, "barn.yaml").sensor().camera);
     const geometry::Scan scan = camera.scan(scene_, view, number, 1);
@@ -125,7 +125,7 @@ class LiveCommands : public testing::Test {
 TEST_F(LiveCommands, SurveyWithoutSceneModel) {
   EXPECT_EQ(answer({})["state"], "first_scan");
   const fs::path page = folder_.path() / "survey" / "report.html";
-  EXPECT_FALSE(fs::exists(page));  // there is nothing to show
+  EXPECT_FALSE(fs::exists(page));  // there are no data yet
   geometry::View view = geometry::look_at({2.5, 1.0, 1.2}, {0.0, 0.0, 0.3});
   for (int i = 0; i < 4; ++i) {
     const json next = answer(measured(view, i));
@@ -150,7 +150,7 @@ TEST_F(LiveCommands, SurveyWithoutSceneModel) {
   EXPECT_TRUE(summary["coverage"].is_null());
   EXPECT_EQ(summary["stop_reason"], "interrupted");
   EXPECT_TRUE(fs::exists(folder_.path() / "survey" / "cloud.ply"));
-  const json data = page_data(page);  // the final one, which no browser reads again
+  const json data = page_data(page);  // the final report, which does not refresh itself
   EXPECT_FALSE(data.contains("live"));
   EXPECT_EQ(data["summary"], summary);
 }

@@ -1,4 +1,4 @@
-// Progress output on terminals and in logs.
+// Progress output in terminals and in logs.
 #include <string>
 
 #include <gmock/gmock.h>

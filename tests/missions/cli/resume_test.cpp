@@ -1,4 +1,4 @@
-// An interrupted survey that goes on ends as if nothing had happened.
+// A resumed survey gives the same results as an uninterrupted one.
 #include <filesystem>
 #include <map>
 #include <sstream>
@@ -29,7 +29,7 @@ using tests::read_content;
 using tests::run_skycap;
 using tests::TestFolder;
 
-/// All results but those that say how long the run took.
+/// Returns all results except those with durations.
 std::map<std::string, std::string> results_in(const fs::path& folder) {
   return tests::results_in(folder, {"summary.json", "report.html"});
 }
@@ -43,7 +43,7 @@ class ResumedPlan : public testing::Test {
     return arguments;
   }
 
-  /// Plans into "part" until that many views are taken.
+  /// Plans into "part" and interrupts after this number of views.
   void interrupt_after(int views, const std::vector<std::string>& more = {}) const {
     CtrlC keys("view " + std::to_string(views) + " of");
     std::ostringstream out;
@@ -56,7 +56,7 @@ class ResumedPlan : public testing::Test {
   fs::path journal_ = folder_.path() / "part" / "survey.journal";
 };
 
-/// One that measures between its views, too.
+/// Returns a mission with scans en route.
 std::string moving_mission() {
   std::string text = flight_mission();
   const std::string sensor = "sensor: {";
@@ -66,7 +66,7 @@ std::string moving_mission() {
 TEST_F(ResumedPlan, MatchesUninterruptedPlan) {
   struct Case {
     std::string mission, planner;
-    int views;  ///< until it is interrupted, and as many more
+    int views;  ///< until the interruption, and after resuming
   };
   for (const auto& [mission, planner, views] : {Case{quick_mission(), "see++", 3},
                                                 {quick_mission(), "oa", 4},
@@ -89,7 +89,7 @@ TEST_F(ResumedPlan, MatchesUninterruptedPlan) {
   }
 }
 
-/// What a kill leaves is the beginning of a journal, of any length.
+/// After a kill, the journal is a prefix of any length.
 TEST_F(ResumedPlan, ResumesFromAnyPrefixOfJournal) {
   folder_.write("m.yaml", quick_mission());
   const std::vector<std::string> more{"--max-views", "6"};
@@ -150,7 +150,7 @@ TEST_F(ResumedPlan, RejectsDamagedJournalAndRestartsWithoutResume) {
   EXPECT_FALSE(fs::exists(journal_));
 }
 
-/// A journal whose checksums are right, and which says something else than the survey does.
+/// A journal with valid checksums whose records differ from the survey's results.
 TEST_F(ResumedPlan, RejectsJournalWithDifferentResults) {
   folder_.write("m.yaml", quick_mission());
   interrupt_after(3);

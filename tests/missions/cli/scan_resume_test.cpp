@@ -1,4 +1,4 @@
-// An interrupted scan that goes on ends as if nothing had happened.
+// A resumed scan gives the same results as an uninterrupted one.
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -24,7 +24,7 @@ using tests::run_skycap;
 
 class ResumedScan : public tests::CubeScan {
  protected:
-  /// Scans into "part" until the progress line shows a text.
+  /// Scans into "part" and interrupts when the progress line contains `text`.
   void interrupt_at(const std::string& text, const std::vector<std::string>& more) const {
     tests::CtrlC keys(text);
     std::ostringstream out;
@@ -55,13 +55,14 @@ TEST_F(ResumedScan, MatchesUninterruptedLaserScan) {
   expect_same_results();
 }
 
-// What a kill leaves: more in the files than the journal knows, and a part of a record.
+// State after a kill: files longer than recorded in the journal, and an incomplete record.
 TEST_F(ResumedScan, DiscardsDataMissingFromJournal) {
   ASSERT_EQ(run_skycap(scan("whole", clouds_)).exit_code, 0);
   interrupt_at("% flown", clouds_);
   const std::string partial = read_content(folder_ / "part/scan.las");
   for (const char* name : {"scan.las", "scan.ply", "scan.rawlog", "preview.ply"}) {
-    // As a kill would: not through the name that shares its bytes with the results.
+    // The file is replaced instead of written to, because the results share its data through a hard
+    // link and must not change.
     const fs::path file = journal_.parent_path() / name;
     const std::string content = read_content(file);
     fs::remove(file);
@@ -82,7 +83,7 @@ TEST_F(ResumedScan, MatchesUninterruptedCameraScan) {
   expect_same_results();
 }
 
-// What a kill leaves of a camera's: half an image that the journal does not know, a longer log.
+// State of a camera scan after a kill: half an image that is not in the journal, and a longer log.
 TEST_F(ResumedScan, DiscardsImagesMissingFromJournal) {
   ASSERT_EQ(run_skycap(scan("whole", images_)).exit_code, 0);
   interrupt_at("image 2 of 4", images_);
@@ -95,7 +96,7 @@ TEST_F(ResumedScan, DiscardsImagesMissingFromJournal) {
   expect_same_results();
 }
 
-// Bytes that were on the disk and are not there any more cannot be made up.
+// If recorded bytes are missing, the scan cannot be resumed.
 TEST_F(ResumedScan, RejectsTruncatedFiles) {
   for (const auto& [options, until, name] :
        {std::tuple{clouds_, "% flown", "scan.las"},
@@ -112,7 +113,7 @@ TEST_F(ResumedScan, RejectsTruncatedFiles) {
   }
 }
 
-// The results of the interrupted run share bytes with the files that grow on.
+// The results of the interrupted run share data with the files that continue to grow.
 TEST_F(ResumedScan, KeepsEarlierResultsWhenInterruptedAgain) {
   ASSERT_EQ(run_skycap(scan("whole", clouds_)).exit_code, 0);
   interrupt_at("% flown", clouds_);
@@ -148,7 +149,7 @@ TEST_F(ResumedScan, RejectsOtherScanWithoutLosingResults) {
   EXPECT_THAT(rejection(clouds_), HasSubstr("scene_digest changed from "));
 }
 
-// Of files that a key names, what they hold counts.
+// For files named by a key, the content matters.
 TEST_F(ResumedScan, RejectsChangedSensorOrRouteFiles) {
   interrupt_at("image 2 of 4", images_);
   const auto rejection_with = [&](const std::string& file, const std::string& from,

@@ -1,4 +1,4 @@
-// `skycap scan` as its user meets it.
+// End-to-end tests of `skycap scan`.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -25,7 +25,7 @@ using tests::ProgramRun;
 using tests::run_skycap;
 using tests::TestFolder;
 
-/// A tenth of a second's flight round a cube of 2 m that stands on the ground.
+/// 0.1 s of flight around a cube of 2 m on the ground.
 class ScanCommand : public testing::Test {
  protected:
   ScanCommand() {
@@ -60,7 +60,7 @@ class ScanCommand : public testing::Test {
     std::ranges::sort(names);
     return names;
   }
-  /// Largest distance of a point from the cube's surface.
+  /// Returns the largest distance between a point and the surface of the cube.
   static float largest_error(const std::vector<Vector3f>& points) {
     float largest = 0.0F;
     for (const Vector3f& point : points) {
@@ -74,7 +74,7 @@ class ScanCommand : public testing::Test {
   std::string mission;
 };
 
-// A name may be as long as a folder's; what comes after it must not be lost.
+// A name may have the maximum length of folder names. The text after it must not be lost.
 TEST_F(ScanCommand, PrintsWholeSummaryWithLongName) {
   const std::string name(250, 'n');
   const ProgramRun run = scan({"--set", "name=" + name});
@@ -91,7 +91,7 @@ TEST_F(ScanCommand, WritesCloudTrajectoriesAndSummary) {
   EXPECT_THAT(files(), testing::ElementsAre("preview.ply", "scan.html", "scan.json", "scan.las",
                                             "trajectory.tum", "trajectory_estimated.tum"));
   const nlohmann::json json = summary();
-  // 2 pi 5 m at 100 m/s, 16 shots each 100 microseconds.
+  // 2 pi 5 m at 100 m/s, with 16 pulses every 100 microseconds.
   EXPECT_EQ(json["shots"], 16 * 3141);
   EXPECT_EQ(json["complete"], true);
   EXPECT_EQ(json["files"][0]["bytes"], std::filesystem::file_size(folder / "out/scan.las"));
@@ -107,22 +107,23 @@ TEST_F(ScanCommand, WritesMeasuredAndTruePoints) {
   ASSERT_EQ(truth.size(), measured.size());
   ASSERT_GT(truth.size(), 1000U);
   EXPECT_LT(largest_error(truth), 1e-5F);    // single precision at 5 m
-  EXPECT_GT(largest_error(measured), 0.1F);  // the position is wrong by some 0.2 m
+  EXPECT_GT(largest_error(measured), 0.1F);  // the position error is about 0.2 m
   EXPECT_NE(tests::read_content(folder / "out/trajectory.tum"),
             tests::read_content(folder / "out/trajectory_estimated.tum"));
 }
 
-// Without errors of the carrier, what is left is the noise of the range: 0.01 m.
+// Without platform errors, only the range noise of 0.01 m remains.
 TEST_F(ScanCommand, HasOnlySensorNoiseWithPerfectNavigation) {
   ASSERT_EQ(scan({"--format", "ply"}).exit_code, 0);
   const auto measured = geometry::read_cloud(folder / "out/scan.ply").positions;
-  EXPECT_LT(largest_error(measured), 0.067F);  // no normal is beyond 6.7 sigma
+  EXPECT_LT(largest_error(measured), 0.067F);  // normal random numbers are limited to 6.7 sigma
   EXPECT_GT(largest_error(measured), 0.02F);
   EXPECT_EQ(tests::read_content(folder / "out/trajectory.tum"),
             tests::read_content(folder / "out/trajectory_estimated.tum"));
 }
 
-// So few shots are all in the preview; the flight of 0.314 s has six turns of 50 ms and a part.
+// The preview contains all of these few pulses. The flight of 0.314 s has six revolutions of 50 ms
+// and an incomplete one.
 TEST_F(ScanCommand, WritesPreviewWithPointsAndPieces) {
   ASSERT_EQ(scan({"--format", "ply"}).exit_code, 0);
   const auto preview = geometry::read_cloud(folder / "out/preview.ply");
@@ -151,7 +152,8 @@ TEST_F(ScanCommand, RegeneratesHtmlReport) {
   }
 }
 
-// Of shots in a row, whatever the channel, a tenth: 1000 of 10,000, six deviations of 30 around.
+// A tenth of consecutive pulses in each channel: 1000 of 10,000, within six standard deviations of
+// 30.
 TEST(Preview, SelectsFractionOfEachChannel) {
   for (std::uint64_t channel = 0; channel < 16; ++channel) {
     int chosen = 0;
@@ -171,12 +173,12 @@ TEST_F(ScanCommand, ScansRouteFileWithNamedSensor) {
                                          "0.1 5 1 1 0 0 0 1\n");
   const ProgramRun run = scan({"--route", route, "--sensor", "ideal_spinning", "--format", "xyz"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_EQ(summary()["shots"], 64 * 1024);  // a turn
+  EXPECT_EQ(summary()["shots"], 64 * 1024);  // pulses per revolution
   EXPECT_EQ(summary()["sensor"], "Ideal spinning scanner");
   EXPECT_LT(largest_error(geometry::read_cloud(folder / "out/scan.xyz").positions), 6e-5F);
 }
 
-// The cube's lid is of lead, its sides of chalk; the ground has what the mission says.
+// The top of the cube is lead and its sides are chalk. The ground has the material of the mission.
 TEST_F(ScanCommand, ComputesIntensitiesFromMaterials) {
   folder.write("chalk.obj",
                "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nv -1 -1 2\nv 1 -1 2\nv 1 1 2\nv -1 1 2\n"
@@ -204,7 +206,8 @@ TEST_F(ScanCommand, ComputesIntensitiesFromMaterials) {
     float& brightest = is_lid ? brightest_lid : brightest_side;
     brightest = std::max(brightest, intensity);
   }
-  // Reflectance times the cosine of incidence: at most 45 degrees from the vertical here.
+  // Intensity is reflectance times the cosine of the incidence angle, which is at most 45 degrees
+  // here.
   EXPECT_GT(brightest_lid, 0.04F);
   EXPECT_LE(brightest_lid, 0.1F);
   EXPECT_GT(brightest_side, 0.4F);
@@ -218,7 +221,8 @@ TEST_F(ScanCommand, ComputesIntensitiesFromMaterials) {
               HasSubstr("materials.yaml:1: material lead is '1.1'; it must be a "));
 }
 
-// Facing the cube's side at x = 1 from x = 5 and then x = 3: all depths there are 4 and 2 m.
+// The camera faces the side at x = 1 from x = 5 and then from x = 3. All depths there are 4 and 2
+// m.
 TEST_F(ScanCommand, WritesDepthImagesForCamera) {
   folder.write("camera.yaml",
                "name: Test camera\nkind: camera\nwidth_px: 20\nheight_px: 10\n"
@@ -245,7 +249,7 @@ TEST_F(ScanCommand, WritesDepthImagesForCamera) {
   EXPECT_EQ(json["depth_unit_m"], 0.002);
 }
 
-// Beside the picture, with the rawlog that was asked for, the dataset is the same.
+// The dataset is equal with and without the requested rawlog.
 TEST_F(ScanCommand, WritesRawlogForCameraOnRequest) {
   folder.write("views.csv",
                "view,x,y,z,direction_x,direction_y,direction_z\n0,5,0,1,-1,0,0\n1,3,0,1,-1,0,0\n");
@@ -253,12 +257,12 @@ TEST_F(ScanCommand, WritesRawlogForCameraOnRequest) {
       scan({"--route", folder.path(), "--sensor", "see_d435", "--format", "rawlog"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(files(), testing::Contains("frames.rawlog"));
-  // Two images of 848 x 480 pixels of 16 bits, and what belongs to them.
+  // Two images of 848 x 480 pixels with 16 bits, plus metadata.
   EXPECT_GT(std::filesystem::file_size(folder / "out/frames.rawlog"), 2 * 2 * 848 * 480);
 }
 
-// Known: EPSG 32630, Oxford's zone. East and north there are turned by 1.4 degrees and shrunk by
-// 0.03 % at most, so the cube stays a cube of 2 m to 0.1 m.
+// EPSG 32630 is the UTM zone of Oxford. Its axes are rotated by 1.4 degrees and its scale differs
+// by at most 0.03%. The cube therefore remains a 2 m cube to 0.1 m.
 TEST_F(ScanCommand, WritesLasInMapCoordinatesOnRequest) {
   const std::vector<std::string> georeference = {"--set", "site.latitude_deg=51.7534",
                                                  "--set", "site.longitude_deg=-1.254",
@@ -270,7 +274,7 @@ TEST_F(ScanCommand, WritesLasInMapCoordinatesOnRequest) {
   EXPECT_THAT(las.crs, HasSubstr("AUTHORITY[\"EPSG\",\"32630\"]"));
   EXPECT_THAT(las.crs, HasSubstr("ellipsoid height"));
   EXPECT_EQ(summary()["las_crs"], "utm");
-  // The mission's other files stay local.
+  // The other files of the mission remain in local coordinates.
   const auto local = geometry::read_cloud(folder / "out/scan.xyz").positions;
   EXPECT_LT(largest_error(local), 0.068F);
   ASSERT_EQ(las.points.size(), local.size());
@@ -279,7 +283,7 @@ TEST_F(ScanCommand, WritesLasInMapCoordinatesOnRequest) {
     const Eigen::Vector3d expected = utm.to_map(local[i].cast<double>());
     ASSERT_LT((las.points[i].position - expected).norm(), 2e-4);  // steps of 0.1 mm in both files
   }
-  // The reader of clouds wants local coordinates, and says so.
+  // `evaluate` requires local coordinates and reports an error otherwise.
   const ProgramRun evaluated = run_skycap({"evaluate", "--cloud", folder / "out/scan.las",
                                            "--model", folder / "cube.obj", "--distance", "0.1"});
   EXPECT_EQ(evaluated.exit_code, 2);
@@ -287,7 +291,7 @@ TEST_F(ScanCommand, WritesLasInMapCoordinatesOnRequest) {
   EXPECT_THAT(evaluated.err, HasSubstr("coordinates must be local"));
 }
 
-// A second cube, 6 m to the east and turned, is scanned and is part of what is evaluated.
+// A second, rotated cube 6 m to the east is scanned and evaluated as well.
 TEST_F(ScanCommand, ScansAndEvaluatesModelCopies) {
   const std::string both =
       folder.write("both.yaml",
@@ -305,13 +309,13 @@ TEST_F(ScanCommand, ScansAndEvaluatesModelCopies) {
         Eigen::AngleAxisf(-0.785398163F, Vector3f::UnitZ()) * (point - Vector3f(6, 1, 1));
     const float off_first = std::abs(own.cwiseAbs().maxCoeff() - 1.0F);
     const float off_second = std::abs(other.cwiseAbs().maxCoeff() - 1.0F);
-    EXPECT_LT(std::min(off_first, off_second), 0.068F);  // the noise of the range
+    EXPECT_LT(std::min(off_first, off_second), 0.068F);  // range noise
     ++(off_first < off_second ? first : second);
   }
   EXPECT_GT(first, 500U);
   EXPECT_GT(second, 500U);
 
-  // What covers a share of one cube covers half of that of two.
+  // Points that cover a fraction of one cube cover half that fraction of two cubes.
   ASSERT_EQ(scan({"--format", "las"}).exit_code, 0);
   const auto coverage = [&](const std::string& of) {
     const ProgramRun evaluated =
@@ -320,7 +324,7 @@ TEST_F(ScanCommand, ScansAndEvaluatesModelCopies) {
     return nlohmann::json::parse(evaluated.out)["coverage"].get<double>();
   };
   EXPECT_GT(coverage(mission), 0.2);
-  EXPECT_NEAR(coverage(both), 0.5 * coverage(mission), 0.01);  // of 100,000 samples
+  EXPECT_NEAR(coverage(both), 0.5 * coverage(mission), 0.01);  // accuracy with 100,000 samples
 
   const auto model = run_skycap({"model", both, "--out", folder / "all.ply"});
   ASSERT_EQ(model.exit_code, 0) << model.err;

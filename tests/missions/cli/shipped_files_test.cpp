@@ -1,7 +1,7 @@
-// Every mission file of a package, spoiled at random: each is refused and the message says where,
-// or an independent flight of the same items keeps the mission's clearance from the scene by CGAL's
-// exact distances. The package is that of a small mission, or those in SKYCAP_PACKAGES (folders,
-// between colons).
+// Random corruption of each mission file in a package. A file is rejected with the location of the
+// error, or an independent flight of its items keeps the mission's clearance according to CGAL's
+// exact distances. The package is that of a small mission, or those in SKYCAP_PACKAGES (folders
+// separated by colons).
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
@@ -30,17 +30,17 @@ namespace {
 
 using flight::Problems;
 
-/// Of each file.
+/// Returns the number of corruptions of each file.
 int corruptions() { return std::getenv("SKYCAP_PACKAGES") == nullptr ? 60 : 200; }
 
-/// Those that are named; without any, one that is made in the folder.
+/// Returns the packages from the environment, or a new one in the folder.
 std::vector<std::filesystem::path> packages(const tests::TestFolder& folder) {
   const char* const named = std::getenv("SKYCAP_PACKAGES");
   if (named == nullptr) {
     const auto run = tests::run_skycap({"plan", folder.write("m.yaml", tests::flight_mission()),
                                         "--no-report", "--out", folder / "out"});
     EXPECT_EQ(run.exit_code, 0) << run.err;
-    // plan writes only what the vehicle reads.
+    // `plan` writes only the formats of the vehicle.
     const auto exported =
         tests::run_skycap({"export", folder / "out", "--format", "kmz", "--out", folder / "kmz"});
     EXPECT_EQ(exported.exit_code, 0) << exported.err;
@@ -53,7 +53,7 @@ std::vector<std::filesystem::path> packages(const tests::TestFolder& folder) {
   return folders;
 }
 
-/// Whether a message says which item, waypoint or part of the file is meant.
+/// Returns true if the message names an item, waypoint or part of the file.
 bool names_location(const std::string& problem) {
   for (const char* where : {"item ", "waypoint ", "line ", "mission.", "geoFence", "template.kml",
                             "waylines.wpml", "doJumpId", "the mission ends in the air"}) {
@@ -62,7 +62,7 @@ bool names_location(const std::string& problem) {
   return false;
 }
 
-/// A package's mission, and what judges its files.
+/// Mission of a package, with the independent check of its files.
 class Shipped {
  public:
   explicit Shipped(const std::filesystem::path& folder)
@@ -90,7 +90,7 @@ class Shipped {
     return *package::autopilot_for_file(file, flight().required_vehicle());
   }
 
-  /// All that `check --route` would say, but returns.
+  /// Returns all problems that `check --route` reports, except those of returns.
   Problems find_problems(const flight::InterpretedRoute& route) const {
     Problems problems = route.problems;
     const double clearance = flight().clearance;
@@ -117,7 +117,7 @@ class Shipped {
 
 struct CorruptedMission {
   Problems problems;
-  std::vector<Eigen::Vector3d> positions;  ///< of an independent flight
+  std::vector<Eigen::Vector3d> positions;  ///< positions of an independent flight
 };
 
 void expect_rejected_or_harmless(const Shipped& shipped, const std::filesystem::path& file,

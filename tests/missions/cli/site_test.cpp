@@ -1,4 +1,4 @@
-// From one tile of a city model to a certified mission in two commands.
+// From one tile of a city model to a verified mission in two commands.
 #include <algorithm>
 #include <fstream>
 #include <iterator>
@@ -36,11 +36,11 @@ tests::ProgramRun run_skycap(const std::string& line) {
   return tests::run_skycap(std::vector<std::string>(std::istream_iterator<std::string>(words), {}));
 }
 
-/// With 15 m between them in a row eastward.
+/// Three buildings in a row to the east, 15 m apart.
 const std::vector<Vector3d> in_a_row{{0, 0, 0}, {25, 0, 0}, {50, 0, 0}};
 
-/// Buildings of 10 m in UTM 32, feet at 380 m and so much elsewhere; the second one has an address.
-/// One file, as an authority gives it.
+/// Returns a CityGML tile with 10 m buildings in UTM 32. Their bases are at 380 m plus the z
+/// offset. The second building has an address.
 std::string tile(const std::vector<Vector3d>& positions = in_a_row,
                  const std::string& crs = "EPSG:25832") {
   std::string text;
@@ -96,13 +96,13 @@ TEST_F(Site, PlansVerifiedMissionInTwoCommands) {
   EXPECT_EQ(summary.at("targets")[0].at("name"), "DEBY_1");
   EXPECT_GT(summary.at("targets")[0].at("coverage").get<double>(), 0.9);
   EXPECT_GE(summary.at("min_clearance_m").get<double>(), 2.0);
-  // Of the file as autopilots read it, neighbours and all.
+  // The route file is checked against all buildings.
   const auto check =
       run_skycap("check " + path_ + "/house.yaml --route " + path_ + "/out/mission.plan");
   EXPECT_EQ(check.exit_code, 0) << check.out;
 }
 
-// A hill that is in the same file is higher than anything that may be flown at the target.
+// A hill in the same file is higher than the maximum flight altitude at the target.
 TEST_F(Site, PlansBelowHillsOfTile) {
   write("tile.gml", tile({{0, 0, 0}, {25, 0, 0}, {50, 0, 0}, {900, 0, 150}}));
   ASSERT_EQ(propose("--id DEBY_1").exit_code, 0);
@@ -112,7 +112,7 @@ TEST_F(Site, PlansBelowHillsOfTile) {
   EXPECT_TRUE(std::filesystem::exists(folder_.path() / "out" / "mission.plan"));
 }
 
-// Wherever the first view is drawn, it is not in the house next door.
+// The first view is never inside a neighbouring building.
 TEST_F(Site, StartsOutsideNeighbouringBuildings) {
   std::vector<Vector3d> crowd;
   for (int x = -2; x <= 2; ++x) {
@@ -135,7 +135,7 @@ TEST_F(Site, StartsOutsideNeighbouringBuildings) {
   EXPECT_GT(heights.size(), 30U);
 }
 
-// Known places: the building's middle, its foot, and what must lie outside of everything.
+// Known positions: the centre of the building, its base, and points outside all obstacles.
 TEST_F(Site, ProposesMissionAroundTarget) {
   ASSERT_EQ(propose("--id DEBY_1").exit_code, 0);
   const config::MissionSetup mission = this->mission();
@@ -159,7 +159,7 @@ TEST_F(Site, ProposesMissionAroundTarget) {
   EXPECT_EQ(mission.scene().priors->priors[1].objects.size(), 3U);
 }
 
-// Each value has a word on it, beside it or over it.
+// Each value has a comment in its line or above it.
 TEST_F(Site, CommentsEveryValue) {
   ASSERT_EQ(propose("--id DEBY_1").exit_code, 0);
   std::istringstream text(read_content(folder_.path() / "house.yaml"));
@@ -209,7 +209,8 @@ TEST_F(Site, ReportsMissingOptions) {
   EXPECT_FALSE(std::filesystem::exists(folder_.path() / "house.yaml"));
 }
 
-// A page to choose from: no mission, and the command for each object in it.
+// Without a selected object, the command writes an HTML page with the command for each object and
+// no mission.
 TEST_F(Site, ShowsTheObjectsWhereNoneIsChosen) {
   write("tile.gml", tile({{0, 0, 0}, {25, 0, 0}, {50, 0, 0}}));
   const auto run = propose("--vehicle mavic_3e");
@@ -228,12 +229,12 @@ TEST_F(Site, ShowsTheObjectsWhereNoneIsChosen) {
   const json& second = map.at("objects")[1];
   EXPECT_EQ(second.at("quoted"), "'DEBY_1'");
   EXPECT_EQ(second.at("height"), 10.0);
-  // The roof and the floor of 10 m, in decimetres; walls are not seen from above.
+  // The roof and the floor of 10 m, in decimetres. Walls are not visible from above.
   const std::string outline = second.at("outline");
   EXPECT_EQ(std::ranges::count(outline, 'M'), 4) << outline;
-  EXPECT_NEAR(map.at("view")[2].get<double>(), 700.0, 5.0);  // UTM's north is not true north
-  EXPECT_EQ(page.find("http"), page.find("http-equiv"));     // nothing is loaded
-  // The command of the page is that of a mission.
+  EXPECT_NEAR(map.at("view")[2].get<double>(), 700.0, 5.0);  // UTM grid north is not true north
+  EXPECT_EQ(page.find("http"), page.find("http-equiv"));     // the page loads no external resources
+  // The command on the page proposes a mission.
   EXPECT_EQ(propose("--vehicle mavic_3e --id DEBY_1").exit_code, 0);
 }
 
@@ -263,7 +264,7 @@ TEST_F(Site, StandsOnTheGroundHereWithoutATerrain) {
       HasSubstr("--base ground conflicts with --vertical"));
 }
 
-// An authority's name that PROJ does not know is overruled.
+// The user's reference system overrides a name that PROJ does not know.
 TEST_F(Site, TakesTheReferenceSystemOfTheUser) {
   write("tile.gml", tile(in_a_row, "urn:adv:crs:ETRS89_UTM32*DE_DHHN2099_NH*GCG2099"));
   EXPECT_EQ(propose("--id DEBY_1").exit_code, 2);
@@ -272,7 +273,7 @@ TEST_F(Site, TakesTheReferenceSystemOfTheUser) {
   EXPECT_NEAR(mission().flight().site.origin.latitude_deg, 48.76315751, 2e-7);
 }
 
-// Neighbours hide walls from the simulated sensor, and nothing of the target is left out.
+// Neighbours hide walls from the simulated sensor, but the whole target is evaluated.
 TEST_F(Site, ProposesWhatCheckFindsNoFaultWith) {
   ASSERT_EQ(propose("--id DEBY_1 --vehicle mavic_3e").exit_code, 0);
   const config::MissionSetup proposed = mission();
@@ -288,7 +289,7 @@ TEST_F(Site, ProposesWhatCheckFindsNoFaultWith) {
   EXPECT_EQ(check.out.find("warning"), std::string::npos) << check.out;
 }
 
-// Without RTK a vehicle may be farther off than the usual clearance allows for.
+// Without RTK, the position error of a vehicle may exceed what the default clearance allows.
 TEST_F(Site, KeepsEveryVehicleFarEnoughAway) {
   for (const std::string_view vehicle : config::vehicle_presets()) {
     remove_proposal();
@@ -309,9 +310,9 @@ TEST_F(Site, TakesTheSensorOfTheUser) {
   EXPECT_THAT(propose("--id DEBY_1 --sensor d345").err, HasSubstr("unknown sensor d345"));
 }
 
-// What a file says of itself holds, whatever is said of those that do not.
+// The datum of a file takes precedence over the option, which applies to files without a datum.
 TEST_F(Site, AppliesVerticalOptionOnlyToFilesWithoutDatum) {
-  // Ground above EGM96's geoid; the top of a slab is where the buildings' feet are.
+  // Ground above the EGM96 geoid: the top of a slab at the base of the buildings.
   const double undulation = site_data::egm96_undulation(48.7632, 11.3995);
   Cube ground;
   ground.size = {400.0, 400.0, 1.0};
@@ -324,8 +325,7 @@ TEST_F(Site, AppliesVerticalOptionOnlyToFilesWithoutDatum) {
   EXPECT_TRUE(mission().scene().priors->sources.front().vertical.has_value());
 }
 
-// Heights above DHHN2016's geoid, whose grid Debian does not have, and EGM96 is within metres of
-// it.
+// Heights above the DHHN2016 geoid, whose grid is not in Debian. EGM96 differs from it by metres.
 TEST_F(Site, UsesEgm96ForMissingGeoidGridOnRequest) {
   write("tile.gml", tile(in_a_row, "EPSG:25832+7837"));
   EXPECT_THAT(
@@ -361,7 +361,7 @@ TEST_F(Site, AppliesHeightOptionToObjectsWithoutHeight) {
   ASSERT_EQ(priors[1].objects.size(), 2U);
 }
 
-// A name is a name, whatever YAML would make of it.
+// File names may contain special characters of YAML.
 TEST_F(Site, AcceptsFilesOfAnyName) {
   const std::string name = "a 'tile': #1 \\n \"{x}\".gml";
   std::filesystem::rename(folder_.path() / "tile.gml", folder_.path() / name);
@@ -371,7 +371,8 @@ TEST_F(Site, AcceptsFilesOfAnyName) {
   EXPECT_EQ(mission().scene().priors->sources.front().file.filename(), name);
 }
 
-/// A crown of 3 m that begins 5 m over the pad, as a laser scanner sees it: eight points.
+/// A tree crown of 3 m whose lowest points are 5 m above the pad, measured by a laser scanner:
+/// eight points.
 TEST_F(Site, KeepsPadClearOfTreeCrown) {
   ASSERT_EQ(propose("--id DEBY_1").exit_code, 0);
   const Vector3d free_pad = mission().flight().takeoff.value();
@@ -390,7 +391,7 @@ TEST_F(Site, KeepsPadClearOfTreeCrown) {
             mission().flight().clearance);
 }
 
-// South of the houses, where pads are looked for first, the ground falls by one in two.
+// South of the houses, where pads are searched first, the terrain has a slope of 50%.
 TEST_F(Site, PutsPadOnLevelGround) {
   std::string grid =
       "ncols 80\nnrows 80\nxllcorner 676130\nyllcorner 5403705\ncellsize 5\n"

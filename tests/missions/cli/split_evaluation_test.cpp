@@ -1,4 +1,4 @@
-// A cloud that is judged in pieces has the figures of the whole one.
+// An evaluation in shards gives the same results as that of the whole cloud.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 using tests::run_skycap;
 
-/// Points about half a sphere of 2 m.
+/// Points close to half a sphere with a radius of 2 m.
 class SplitEvaluation : public testing::Test {
  protected:
   SplitEvaluation() {
@@ -62,7 +62,7 @@ class SplitEvaluation : public testing::Test {
 };
 
 TEST_F(SplitEvaluation, MatchesUnsplitEvaluationExactly) {
-  write_cloud(1'100'000);  // a reader hands on up to a million at a time
+  write_cloud(1'100'000);  // readers return chunks of up to a million points
   const std::string whole = evaluate({}).out;
   const auto figures = nlohmann::json::parse(whole);
   EXPECT_EQ(figures.at("points"), 1'100'000);
@@ -83,7 +83,8 @@ TEST_F(SplitEvaluation, MatchesUnsplitEvaluationExactly) {
   }
 }
 
-// The scanner of a mission with ground measures that, too: it is no error of the model's points.
+// In missions with ground the scanner also measures the ground, which is not an error of the
+// model's points.
 TEST_F(SplitEvaluation, SeparatesGroundFromModel) {
   std::vector<Eigen::Vector3f> points;
   for (int i = 0; i < 500; ++i) {
@@ -126,7 +127,8 @@ TEST_F(SplitEvaluation, SkipsCompletePiecesAndReportsMissingOnes) {
   const auto early = shards(2, {"--collect"});
   EXPECT_EQ(early.exit_code, 1);
   EXPECT_THAT(early.err, HasSubstr("1 of 2 pieces are complete; missing 0"));
-  ASSERT_EQ(shards(2, {"--index", "1", "--distance", "0.06"}).exit_code, 2);  // given twice
+  // This shard exists twice.
+  ASSERT_EQ(shards(2, {"--index", "1", "--distance", "0.06"}).exit_code, 2);
   ASSERT_EQ(shards(2, {"--index", "0"}).exit_code, 0);
   fs::resize_file(folder_.path() / "out" / "pieces" / "0_of_2" / "distances.bin", 4);
   const auto damaged = shards(2, {"--collect"});

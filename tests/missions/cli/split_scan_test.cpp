@@ -1,4 +1,4 @@
-// A flight that is measured in pieces gives the bytes of the whole one.
+// A scan in shards gives the same bytes as an unsplit one.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -24,7 +24,7 @@ using tests::run_skycap;
 
 class SplitScan : public tests::CubeScan {
  protected:
-  /// Measures one piece, as a task does.
+  /// Measures one shard, as a task does.
   tests::ProgramRun task(std::size_t shard, std::size_t shards,
                          const std::vector<std::string>& more = {}) const {
     return run_skycap(scan("part", with(more, {"--pieces", std::to_string(shards), "--index",
@@ -43,7 +43,7 @@ class SplitScan : public tests::CubeScan {
 TEST_F(SplitScan, MatchesUnsplitScanForAnyTaskOrder) {
   ASSERT_EQ(run_skycap(scan("whole", all_)).exit_code, 0);
   for (const std::size_t shards : {1, 2, 4}) {
-    for (std::size_t i = 0; i < shards; ++i) {  // not in their order
+    for (std::size_t i = 0; i < shards; ++i) {  // in another order
       const auto run =
           task((3 * i + 2) % shards, shards, with(all_, {"--threads", i % 2 == 0 ? "1" : "2"}));
       ASSERT_EQ(run.exit_code, 0) << run.err;
@@ -92,7 +92,7 @@ TEST_F(SplitScan, SkipsCompletePiecesAndRepeatsPiecesOfOtherScans) {
   const std::string before = read_content(cloud);
   ASSERT_EQ(task(1, 2, {"--seed", "2"}).exit_code, 0);
   EXPECT_NE(read_content(cloud), before);
-  EXPECT_EQ(collect(2).exit_code, 1);  // that piece is of another seed
+  EXPECT_EQ(collect(2).exit_code, 1);  // one shard has a different seed
 }
 
 TEST_F(SplitScan, ResumesInterruptedPiece) {
@@ -103,7 +103,7 @@ TEST_F(SplitScan, ResumesInterruptedPiece) {
   const auto second = with(clouds_, {"--pieces", "2", "--index", "1", "--threads", "1"});
   ASSERT_EQ(cli::run_command_line(scan("part", second), {out, err, true, keys.token()}), 1);
   EXPECT_FALSE(fs::exists(own_shard_folder("1_of_2") / "piece.json"));
-  // As a kill leaves it: more in a file than the journal knows of.
+  // State after a kill: a file is longer than recorded in the journal.
   const fs::path grown = own_shard_folder("1_of_2") / "unfinished" / "scan.las";
   ASSERT_TRUE(fs::exists(grown));
   std::ofstream(grown, std::ios::binary | std::ios::app) << std::string(1000, 'x');

@@ -27,8 +27,8 @@ std::string read_source(const std::string& source) {
   return text.str();
 }
 
-/// The fields that the validate() functions of a source complain of: names in quotes, and the first
-/// word of sentences.
+/// Returns the fields named in the errors of validate() functions: names in quotes, and the first
+/// words of sentences.
 std::set<std::string> find_fields(const std::string& source) {
   static const std::regex field(R"re("([a-z]+(?:[_.][a-z]+)*)(?:"|(?= (?:is|has|must)\b)))re");
   const std::string text = read_source(source);
@@ -39,10 +39,10 @@ std::set<std::string> find_fields(const std::string& source) {
   return fields;
 }
 
-/// Words in quotes that are rules, not fields, and fields that no mission sets.
+/// Quoted words that are not fields, and fields that missions cannot set.
 const std::set<std::string> not_from_missions = {
-    "continuation_steps",                                    // a constant of the planner
-    "stereo.disparity_sigma_px", "stereo.disparity_step_px"  // descriptions of sensors alone
+    "continuation_steps",                                    // constant of the planner
+    "stereo.disparity_sigma_px", "stereo.disparity_step_px"  // only in sensor descriptions
 };
 
 TEST(FieldKeys, NameExistingMissionKeys) {

@@ -109,7 +109,7 @@ TEST(FormerNames, AreNotRewrittenWhenAmbiguous) {
               HasSubstr("write each key on a separate line"));
 }
 
-// A summary that version 0.1 wrote, as the corpora of the readers keep it.
+// A summary written by version 0.1, from the fuzzing corpus.
 TEST(FormerFields, AreReadInPackages) {
   const std::filesystem::path file = source / "tests/fuzz/corpus/summary/package.json";
   ASSERT_THAT(read_content(file), HasSubstr("\"version\": \"0.1.0\""));

@@ -1,5 +1,5 @@
-// Wrong, extreme and hostile values for every key, made from the table of keys: each is refused in
-// one line that names file, line and key, or is taken as it stands, within the key's range.
+// Wrong, extreme and malicious values for each key in the key table. Each value is rejected in one
+// line with file, line and key, or accepted within the key's range.
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -24,13 +24,13 @@ namespace {
 using config::Key;
 using config::KeyType;
 
-/// Values by key, as a mission file says them.
+/// Values by key, as text of a mission file.
 using Values = std::map<std::string, std::string>;
 
-/// The mission file: sections are maps, and each key has a line of its own.
+/// Returns the mission file: sections are maps, and each key has its own line.
 std::string mission_text(const Values& values) {
   std::string text;
-  std::vector<std::string> open;  // sections
+  std::vector<std::string> open;  // names of the open sections
   for (const auto& [path, value] : values) {
     std::vector<std::string> parts;
     std::istringstream stream(path);
@@ -48,7 +48,7 @@ std::string mission_text(const Values& values) {
   return text;
 }
 
-/// What a key needs beside it to mean anything.
+/// Returns the other keys that a key requires.
 Values around(const Key& key) {
   Values values{{"scene.model", "builtin:teapot"}, {"evaluation.coverage_distance", "0.03"}};
   if (key.path.starts_with("flight.")) {
@@ -60,7 +60,7 @@ Values around(const Key& key) {
   return values;
 }
 
-/// What no key takes, or only a text does.
+/// Values that are invalid for all keys, or valid for strings only.
 const std::vector<std::string> hostile = {
     "",
     "~",
@@ -157,7 +157,8 @@ bool is_key_error(const std::string& message) {
   return config::find_key(named) != nullptr || named.find_first_of(".[") != std::string::npos;
 }
 
-/// Numbers as taken: finite, and in the key's range up to the rounding of degrees.
+/// Checks that an accepted number is finite and within the key's range, up to the rounding of
+/// degrees.
 void expect_in_range(const Key& key, double number, const std::string& value) {
   const double slack = 1e-12 * std::abs(number);
   EXPECT_TRUE(number >= key.range.min - slack && number <= key.range.max + slack)
@@ -175,8 +176,8 @@ void expect_sane(const config::MissionDocument& document, const std::string& val
   }
 }
 
-/// Whether they are taken; a finding if they are taken out of their ranges, or if what refuses them
-/// is not one line that names a key. `what` names them in findings.
+/// Returns true if the values are accepted. The test fails if a value outside its range is
+/// accepted, or if the error is not one line with a key. `what` describes the values in failures.
 bool are_accepted(const Values& values, const std::string& what) {
   try {
     expect_sane(*config::parse_mission(mission_text(values), "m.yaml").document, what);
@@ -208,8 +209,8 @@ std::string number_drawn(std::mt19937& random) {
   return support::exact_text((random() % 2 == 0 ? 1.0 : -1.0) * std::pow(10.0, exponent));
 }
 
-// Several at once, of numbers of all sizes. HOSTILE_SEED and HOSTILE_MISSIONS in the environment
-// draw others, and so many.
+// Random combinations with numbers of all magnitudes. HOSTILE_SEED and HOSTILE_MISSIONS in the
+// environment set the seed and the number of missions.
 TEST(HostileKeys, AreRejectedOrAcceptedInRandomCombinations) {
   const char *seed = std::getenv("HOSTILE_SEED"), *missions = std::getenv("HOSTILE_MISSIONS");
   std::mt19937 random(seed == nullptr ? 1U : static_cast<unsigned>(std::stoul(seed)));

@@ -1,4 +1,4 @@
-// That each key of the mission file stands for the field that is named for it, and for no other.
+// Each key of the mission file sets the field with its name, and no other field.
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -22,11 +22,12 @@ using Eigen::Vector3d;
 
 constexpr double degree = geometry::radians_per_degree;
 
-/// Two values that a key takes; `is_second` says which.
+/// Returns one of two valid values of a key.
 KeyValue value_for(const config::Key& key, bool is_second) {
   switch (key.type) {
     case config::KeyType::text:
-      if (key.path == "scene.model") {  // of drawn models, which have a level of detail and a seed
+      // Procedural models, which have a level of detail and a seed.
+      if (key.path == "scene.model") {
         return std::string("builtin:") + (is_second ? "city-block" : "church");
       }
       return std::string(is_second ? "/some/tile.yaml" : "/some/other.yaml");
@@ -65,12 +66,12 @@ std::string value_text(const config::Key& key, const Document& document) {
   return value ? config::to_text(*value) : "-";
 }
 
-/// A key that has no value unless another has a certain one, and that other one.
+/// Keys that only have a value if another key has a certain value, and that other key.
 const std::map<std::string, std::string> means_nothing_without = {
     {"sensor.frame_period", "sensor.capture"}};
 
-/// Each key has a field of its own: setting it changes its text, to that of the value, and no other
-/// key's. `document` has room for the keys: a source of prior data for those of sources.
+/// Checks that setting a key changes its own text to the value and no other key. `document` must
+/// contain a prior source for the keys of sources.
 void expect_own_fields(std::span<const config::Key> keys, Document document) {
   for (const config::Key& key : keys) key.set(document, value_for(key, true));
   for (const config::Key& key : keys) {
@@ -97,7 +98,7 @@ TEST(MissionKeys, HaveDistinctFieldsForSources) {
   expect_own_fields(config::find_key("prior")->items, std::move(document));
 }
 
-/// A field as the file would say it: enumerators by their number.
+/// Returns the value of a field as in the file. Enumerators are numbers.
 template <class Field>
 KeyValue value(const Field& field) {
   if constexpr (requires { field.has_value(); }) {
@@ -120,7 +121,7 @@ KeyValue degrees(const Field& field) {
   }
 }
 
-/// Copies of a model: [east, north, turn].
+/// Copies of a model: [east, north, rotation].
 KeyValue in_degrees(std::vector<Vector3d> copies) {
   for (Vector3d& copy : copies) copy.z() /= degree;
   return copies;
@@ -403,7 +404,7 @@ constexpr KeyField fields[] = {
     {"scan.depth_unit", [](const Document& d) { return value(d.scan.depth_unit); }},
 };
 
-// A key that sets and gets the field of another passes all tests that only go through the key.
+// A key that sets and gets the field of another key would pass all tests that only use keys.
 TEST(MissionKeys, SetAndGetTheirNamedFields) {
   EXPECT_EQ(std::size(fields), config::mission_keys().size() - 1) << "all but the list of sources";
   for (const config::Key& key : config::mission_keys()) {

@@ -63,7 +63,7 @@ TEST(MissionReader, TakesAnyCameraPreset) {
       "instead of sensor.preset");
 }
 
-// Whoever describes another sensor is not told of the preset's range.
+// A described sensor does not inherit the useful range of the preset.
 TEST(MissionReader, KnowsTheUsefulRangeOfTheNamedCamera) {
   EXPECT_TRUE(parsed("").sensor.useful_range);
   EXPECT_TRUE(parsed("sensor: {preset: d435, width: 320}\n").sensor.useful_range);
@@ -89,8 +89,8 @@ TEST(MissionReader, SuggestsKeyInCorrectSection) {
                         "volumetric, start, limits, evaluation, paper, site, flight, scan"));
 }
 
-// The parser must survive what people and fuzzers write: here, every prefix of a valid mission and
-// every single damaged byte of it either parses or is refused in one line.
+// Robustness of the parser: each prefix of a valid mission, and the mission with any one byte
+// damaged, is parsed or rejected in one line.
 TEST(MissionReader, RejectsDamagedFilesInOneLine) {
   const std::string whole =
       "scene:\n  model: builtin:teapot  # a comment\n  position: [1, 2.5, -3e1]\n"

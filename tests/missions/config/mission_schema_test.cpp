@@ -1,4 +1,4 @@
-// The key table, the JSON Schema, the manual and the shipped missions say the same.
+// The key table, the JSON Schema, the reference manual and the shipped missions are consistent.
 #include <filesystem>
 #include <set>
 #include <sstream>
@@ -26,7 +26,7 @@ Json shipped_schema() {
   return Json::parse(tests::read_content(source / "missions" / "mission.schema.json"));
 }
 
-/// Paths of all properties of a schema that are not sections.
+/// Collects the paths of all properties of a schema except sections.
 void collect_paths(const Json& section, const std::string& prefix, std::set<std::string>& paths) {
   for (const auto& [name, property] : section["properties"].items()) {
     if (property.contains("properties")) {
@@ -66,7 +66,7 @@ TEST(MissionKeys, BelongToTheirSectionAndAreUnique) {
   EXPECT_EQ(paths.size(), config::mission_keys().size());
 }
 
-// For each key, what the schema calls the limits is where the reader starts to refuse.
+// For each key, the reader rejects values outside the limits in the schema.
 TEST(MissionSchema, HasSameTypesAndRangesAsReader) {
   const Json schema = shipped_schema();
   for (const config::Key& key : testing_support::not_empty(config::mission_keys())) {
@@ -110,7 +110,7 @@ TEST(MissionSchema, MatchesShippedFile) {
       << "run: build/release/skycap check --schema > missions/mission.schema.json";
 }
 
-/// The rows of a table of keys, in any order: the page groups them by section.
+/// Returns the rows of a key table in any order, because the page groups them by section.
 std::multiset<std::string> key_rows(const std::string& text) {
   std::multiset<std::string> rows;
   std::istringstream lines(text);
@@ -120,7 +120,7 @@ std::multiset<std::string> key_rows(const std::string& text) {
   return rows;
 }
 
-/// The generated parts of a page (docs/generate_reference.py).
+/// Returns the generated parts of a page (docs/generate_reference.py).
 std::string generated_parts(const std::string& page) {
   std::string parts;
   for (auto begin = page.find("<!-- generated: "); begin != std::string::npos;

@@ -1,4 +1,4 @@
-// The key prior: a list of maps whose keys stand in a table of their own.
+// The key `prior`: a list of maps with their own key table.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -69,7 +69,7 @@ TEST(PriorKeys, SetEveryFieldOfSource) {
   EXPECT_EQ(given.locations.at("prior[1].height"), "m.yaml:8");
 }
 
-// What a package keeps of a mission is read back as the same sources.
+// The mission in a package contains the same sources.
 TEST(PriorKeys, ReadBackFromSettings) {
   const config::MissionDocument given = parsed(
       "prior: [{file: tile.gml, role: target, base: terrain, place: {heading_deg: 90}},\n"
@@ -102,8 +102,8 @@ TEST(PriorKeys, ReportInvalidValuesWithLine) {
               HasSubstr("key prior[0].select is a section"));
 }
 
-// The hostile values that no key takes, at each key of a source: refused by its name, or taken
-// within its range.
+// Malicious values for each key of a source are rejected with the key, or accepted within its
+// range.
 TEST(PriorKeys, RejectHostileValues) {
   const std::vector<std::string> hostile = {"",
                                             "~",

@@ -1,5 +1,4 @@
-// resolve() is a function of its arguments, and nothing changes when what it made is resolved
-// again.
+// resolve() depends only on its arguments, and resolving its result again changes nothing.
 #include <cmath>
 #include <map>
 #include <memory>
@@ -42,7 +41,7 @@ Texts make_texts(const MissionSetup& setup) {
   return texts;
 }
 
-/// What follows from several keys, by name.
+/// Values derived from several keys, by name.
 class DerivedValues {
  public:
   explicit DerivedValues(const MissionSetup& setup) {
@@ -142,7 +141,7 @@ class DerivedValues {
   }
 };
 
-/// All that the arguments of resolve() are.
+/// All arguments of resolve().
 struct Inputs {
   config::MissionDocument document;
   config::Profiles profiles;
@@ -159,7 +158,7 @@ struct Inputs {
   MissionSetup resolved() const { return config::resolve(document, profiles, priors, geoid); }
 };
 
-/// A block of 10 m as a target.
+/// Block of 10 m as a target.
 const std::string house =
     "v -5 -5 0\nv 5 -5 0\nv 5 5 0\nv -5 5 0\nv -5 -5 8\nv 5 -5 8\nv 5 5 8\nv -5 5 8\n"
     "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
@@ -172,7 +171,7 @@ class ResolvePurity : public testing::Test {
     return config::parse_mission_document(text, (folder_.path() / "m.yaml").string());
   }
 
-  /// Missions of every kind of sensor and planner, with and without vehicles.
+  /// Returns missions for each kind of sensor and planner, with and without vehicles.
   static Texts missions() {
     const std::string scene =
         "scene: {model: 'builtin:teapot', longest_side: 10}\n"
@@ -226,7 +225,7 @@ TEST_F(ResolvePurity, ReturnsSameSetupForSameArguments) {
   }
 }
 
-// Bit for bit: what is completed already is not completed again.
+// Resolving again keeps a resolved document bitwise equal.
 TEST_F(ResolvePurity, KeepsResolvedDocumentUnchanged) {
   for (const auto& [name, text] : missions()) {
     SCOPED_TRACE(name);
@@ -240,8 +239,8 @@ TEST_F(ResolvePurity, KeepsResolvedDocumentUnchanged) {
   }
 }
 
-/// The document that says every key as the setup has it. Beside a scanner those of the camera, in
-/// whose place it is, are refused.
+/// Returns a document with all keys of the setup. With a scanner, the keys of the camera are
+/// rejected and therefore omitted.
 config::MissionDocument make_document(const MissionSetup& setup, const std::string& file) {
   std::vector<config::KeyOverride> keys;
   for (const auto& [path, text] : make_texts(setup)) {
@@ -255,7 +254,7 @@ config::MissionDocument make_document(const MissionSetup& setup, const std::stri
 }
 
 TEST_F(ResolvePurity, ReturnsSameSetupForWrittenKeys) {
-  constexpr double digits = 1e-9;  // texts of keys have twelve
+  constexpr double digits = 1e-9;  // key values have twelve digits in text
   for (const auto& [name, text] : missions()) {
     SCOPED_TRACE(name);
     const MissionSetup setup = Inputs(document(text)).resolved();
@@ -271,7 +270,7 @@ TEST_F(ResolvePurity, ReturnsSameSetupForWrittenKeys) {
   }
 }
 
-// As if the file had said so, but for what belongs to the run.
+// Equal to a file with the same keys, except for settings of the run.
 TEST_F(ResolvePurity, MatchesFileWithSameKeysWhenOverridden) {
   const std::vector<config::KeyOverride> changes{{"the test", "flight.clearance", "3"},
                                                  {"the test", "planner.view_distance", "7"}};

@@ -49,19 +49,19 @@ TEST(Resolve, UsesEgm96WhenGeoidIsRequiredButUnset) {
   EXPECT_FALSE(undulation("flight: {vehicle: none}\n"));
 }
 
-// spec: psi = d, one frontier a twentieth of d, occluders 2 r apart, tau above the number of
-// clusters.
+// Specification: psi = d, one frontier for a twentieth of d, occluders 2 r apart, tau above the
+// number of clusters.
 TEST(Resolve, DerivesBuildingPresetFromSensorAndDensity) {
   const std::string building =
       "sensor: {preset: high_resolution}\n"
       "planner: {preset: building, density: 213, spacing: 0.0685, resolution_radius: 0.15";
   const SeeConfig see = see_config(parsed(building + "}"));
-  EXPECT_NEAR(see.occlusion_search_distance, 41.29, 5e-3);  // d, as published
+  EXPECT_NEAR(see.occlusion_search_distance, 41.29, 5e-3);  // published value of d
   EXPECT_NEAR(see.frontier_spacing, 2.0645, 5e-4);
   EXPECT_DOUBLE_EQ(see.occluder_spacing, 0.3);
   EXPECT_EQ(see.visibility_update_limit, 1000U);
   EXPECT_EQ(see.still_occluded, survey::see::StillOccluded::deferred);
-  EXPECT_EQ(see.core_threshold, 5);  // 10.5 on a disc of points so far apart
+  EXPECT_EQ(see.core_threshold, 5);  // 10.5 points on a disc at this spacing
 
   const SeeConfig overridden =
       see_config(parsed(building + ", occlusion_search_distance: 10, visibility_update_limit: 5}"));
@@ -73,7 +73,7 @@ TEST(Resolve, DerivesBuildingPresetFromSensorAndDensity) {
   EXPECT_EQ(see_config(published).core_threshold, std::nullopt);
 }
 
-// Points as far apart as the paper's would leave gaps that do not count as covered.
+// The point spacing of the paper would leave gaps that do not count as covered.
 TEST(Resolve, LimitsSpacingToCoverageDistance) {
   const auto spacing = [](const std::string& distance, const std::string& more) {
     return config::parse_mission(
@@ -87,11 +87,11 @@ TEST(Resolve, LimitsSpacingToCoverageDistance) {
   EXPECT_DOUBLE_EQ(spacing("0.1", ""), 0.05) << "the paper's, rho^(-1/2)";
   EXPECT_DOUBLE_EQ(spacing("0.05", ""), 0.04);
   EXPECT_DOUBLE_EQ(spacing("0.05", ", spacing: 0.06"), 0.06) << "as the mission says";
-  // A D435's image is 2 tan(69.4 deg / 2) = 1.385 m wide at a metre.
+  // At 1 m, the image of a D435 is 2 tan(69.4 deg / 2) = 1.385 m wide.
   EXPECT_NEAR(spacing("0.001", ", view_distance: 10"), 10 * 1.385 / 848, 1e-4) << "as rays meet it";
 }
 
-// A moving sensor measures on the way, so that stops are what is left to spare.
+// A moving sensor also measures en route, so the goal is to minimise the stops.
 TEST(Resolve, MinimisesTimeWhenSensorCapturesEnRoute) {
   const auto goal = [](const std::string& more) {
     return parsed("planner: {name: skycap" + more).text("planner.goal");
@@ -104,8 +104,8 @@ TEST(Resolve, MinimisesTimeWhenSensorCapturesEnRoute) {
   EXPECT_EQ(goal(", goal: views" + moving), "views");
 }
 
-// Of surveys by the M350 at 4 m/s a view was measured to cost 6.5 to 8 s, and half a second of rest
-// was added since.
+// In surveys with the M350 at 4 m/s, the measured cost of a view is 6.5 to 8 s. The stop includes
+// another 0.5 s of rest.
 TEST(ViewPrice, DependsOnViewDistanceOrStopTime) {
   const auto price = [](const std::string& more) {
     const config::MissionSetup setup =
@@ -137,7 +137,7 @@ TEST(Resolve, ReadsSiteAirspace) {
   ASSERT_EQ(limits.no_fly.size(), 1U);
   EXPECT_EQ(limits.no_fly[0].footprint[1], Eigen::Vector2d(5.0, 0.0));
   EXPECT_EQ(limits.no_fly[0].ceiling, 30.0);
-  EXPECT_EQ(limits.min_height, 5.0);  // the higher of the two
+  EXPECT_EQ(limits.min_height, 5.0);  // the higher of the two limits
   EXPECT_EQ(limits.max_height, 120.0);
   EXPECT_EQ(limits.min_standoff, 2.0);
   EXPECT_NEAR(limits.max_pitch, 0.5235988, 1e-6);
@@ -183,7 +183,7 @@ TEST(Resolve, DefaultsToSkycapPlannerForFlights) {
   EXPECT_EQ(planner(flight_mission + "planner: {name: see}\n"), survey::PlannerName::see);
 }
 
-// k = 1 admits no frontier: SEE cannot work with it, and no other planner looks at k.
+// k = 1 admits no frontiers, so SEE cannot use it. Other planners ignore k.
 TEST(Resolve, ChecksDensityOnlyForSee) {
   const std::string sparse = smallest + "planner: {density: 1000, resolution_radius: 0.05, name: ";
   for (const char* name : {"see", "see++"}) {
@@ -196,7 +196,7 @@ TEST(Resolve, ChecksDensityOnlyForSee) {
   }
 }
 
-// 51.7534 is no binary fraction: by way of radians it came back as 51.753399999999999.
+// 51.7534 is not a binary fraction. Conversion to radians and back would give 51.753399999999999.
 TEST(Resolve, KeepsExactSitePosition) {
   for (const double latitude : {51.7534, -33.856784, 0.1, 47.3}) {
     const flight::GeodeticPoint origin =
@@ -209,11 +209,11 @@ TEST(Resolve, KeepsExactSitePosition) {
   }
 }
 
-/// A setting that its own planner refuses, and others do not look at.
+/// Setting that its own planner rejects and other planners ignore.
 struct RejectedSetting {
   const char* planner;
   const char* more;
-  const char* message;  ///< how it begins
+  const char* message;  ///< prefix of the message
 };
 
 TEST(Resolve, ChecksPlannerSettingsAndNamesTheirLine) {

@@ -1,4 +1,4 @@
-// Which laser scanners a mission may name, and what goes with them.
+// Laser scanners that a mission may name, and their related keys.
 #include <string>
 
 #include <gmock/gmock.h>

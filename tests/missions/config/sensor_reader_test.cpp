@@ -36,7 +36,7 @@ TEST(SensorPresets, AreValid) {
   }
 }
 
-// The data sheets' rates, each the number of lasers over the firing period.
+// Pulse rates of the data sheets: the number of lasers divided by the firing period.
 TEST(SensorPresets, HavePulseRatesOfDataSheets) {
   EXPECT_NEAR(pulses_per_second("velodyne_vlp16"), 289'352, 1);
   EXPECT_NEAR(pulses_per_second("velodyne_vlp32c"), 578'704, 1);
@@ -50,7 +50,7 @@ TEST(SensorPresets, HavePulseRatesOfDataSheets) {
   EXPECT_NEAR(pulses_per_second("riegl_vux_1uav"), 550'000, 1);
 }
 
-// The widest angle off the axis that a rosette reaches, against half its sold field of view.
+// Compares the largest off-axis angle of a rosette with half the field of view in the data sheet.
 TEST(SensorPresets, CoverFieldsOfViewOfRosettes) {
   const auto widest = [](const char* preset) {
     const config::SensorDescription description = config::find_sensor(preset);
@@ -88,7 +88,7 @@ TEST(SensorPresets, MatchSimulatorCameras) {
   EXPECT_NEAR(stereo.disparity_sigma_px / (stereo.focal_length_px * stereo.baseline), 3.8e-3, 5e-5);
 }
 
-// One list for plan and scan: each kind names the key of the other.
+// `plan` and `scan` share one list of presets. An error for the wrong kind names the right key.
 TEST(SensorPresets, AreOneListForPlanAndScan) {
   EXPECT_EQ(config::find_camera("d435").name, config::find_sensor("see_d435").name);
   EXPECT_EQ(config::find_sensor("high_resolution").name,

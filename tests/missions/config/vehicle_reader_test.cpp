@@ -36,8 +36,8 @@ TEST(VehiclePresets, AreValidAndNamedLikeTheirFiles) {
   }
 }
 
-// The energy model's calibration holds for every one: a full battery hovers as long as the sheet
-// says.
+// Calibration of the energy model: for each preset, a full battery hovers as long as the data sheet
+// states.
 TEST(VehiclePresets, HaveHoverTimeOfDataSheets) {
   for (const auto& [preset, text] : testing_support::not_empty(config::vehicle_preset_files())) {
     const flight::Vehicle vehicle = config::find_vehicle(std::string(preset));
@@ -47,7 +47,7 @@ TEST(VehiclePresets, HaveHoverTimeOfDataSheets) {
   }
 }
 
-// ArduPilot's documentation: WP_SPD_UP, WP_SPD_DN, WP_ACC, WP_ACC_Z, WP_JERK, LAND_SPD_MS.
+// ArduPilot documentation: WP_SPD_UP, WP_SPD_DN, WP_ACC, WP_ACC_Z, WP_JERK, LAND_SPD_MS.
 TEST(VehiclePresets, HaveArduCopterDefaults) {
   const flight::Vehicle vehicle = config::find_vehicle("generic_ardupilot");
   EXPECT_EQ(vehicle.autopilot, AutopilotType::ardupilot);

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-/// The square from (-2, -2) to (2, 2) at z = 0.
+/// Square from (-2, -2) to (2, 2) at z = 0.
 const geometry::Mesh square{{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}},
                             {{0, 1, 2}, {0, 2, 3}}};
 
@@ -28,13 +28,13 @@ std::vector<Vector3f> noisy_points(int count, float sigma) {
   return points;
 }
 
-// Points of a half-normal distribution of distances from the surface, from either side.
+// The distances of the points from the surface, on both sides, have a half-normal distribution.
 TEST(AccuracyMeter, RecoversMeasurementNoise) {
   constexpr float sigma = 0.01F;
   evaluation::AccuracyMeter meter(square);
   meter.add(noisy_points(20'000, sigma));
   const evaluation::CloudAccuracy accuracy = meter.accuracy();
-  // Standard errors of 20,000 values are below 1 % of sigma; 3 % leaves room.
+  // The standard errors for 20,000 values are below 1% of sigma. The tolerance is 3%.
   EXPECT_NEAR(accuracy.root_mean_square, sigma, 0.03 * sigma);
   EXPECT_NEAR(accuracy.mean, sigma * std::sqrt(2.0 / std::numbers::pi), 0.03 * sigma);
   EXPECT_NEAR(accuracy.median, 0.6745 * sigma, 0.03 * sigma);
@@ -42,7 +42,8 @@ TEST(AccuracyMeter, RecoversMeasurementNoise) {
   EXPECT_GE(accuracy.largest, accuracy.percentile_95);
 }
 
-// Five points whose distances are known: 1, 2, 3, 4 above the square and 3-4-5 beside its corner.
+// Five points with known distances: 1, 2, 3 and 4 above the square, and a 3-4-5 triangle next to
+// its corner.
 TEST(AccuracyMeter, ComputesKnownFiguresOfFivePoints) {
   evaluation::AccuracyMeter meter(square);
   meter.add(std::vector<Vector3f>{{0, 0, 3}, {1, 1, -1}, {5, 6, 0}, {0, 1, 4}, {-1, 0, 2}});
@@ -68,8 +69,8 @@ TEST(AccuracyMeter, IsIndependentOfPiecesAndThreads) {
   EXPECT_EQ(one.percentile_95, other.percentile_95);
 }
 
-// Known answer: a wall that stands on the ground, in the plane x = 0. Of points above the diagonal
-// the wall is nearer.
+// Known case: a wall on the ground, in the plane x = 0. Points above the diagonal are closer to the
+// wall.
 TEST(AccuracyMeter, IgnoresPointsNearerToSurroundings) {
   const geometry::Mesh wall{{{0, -9, 0}, {0, 9, 0}, {0, 9, 9}, {0, -9, 9}}, {{0, 1, 2}, {0, 2, 3}}};
   const geometry::Mesh ground{{{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}},

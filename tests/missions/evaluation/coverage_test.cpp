@@ -15,7 +15,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-/// The unit sphere's surface, evenly sampled.
+/// Returns evenly distributed samples of the unit sphere.
 std::vector<Vector3f> sphere(std::size_t count) {
   std::vector<Vector3f> points;
   for (const Vector3d& direction : evaluation::fibonacci_directions(count)) {
@@ -24,8 +24,8 @@ std::vector<Vector3f> sphere(std::size_t count) {
   return points;
 }
 
-// Brute-force twin. Cells of the search are 2 r_d wide; coordinates of both signs and a shift far
-// from the origin try their borders.
+// Brute-force reference. The search cells are 2 r_d wide. Coordinates of both signs and a shift far
+// from the origin test their borders.
 TEST(CoverageMeter, MatchesBruteForce) {
   for (const float shift : {0.0F, 40.0F}) {
     std::vector<Vector3f> samples = tests::random_points(2000, 1.0, 1);
@@ -48,13 +48,13 @@ TEST(CoverageMeter, MatchesBruteForce) {
       covered += is_covered;
     }
     EXPECT_EQ(meter.share(), static_cast<double>(covered) / 2000.0);
-    EXPECT_GT(covered, 100U);  // or the test would compare nothing
+    EXPECT_GT(covered, 100U);  // otherwise the test would compare nothing
     EXPECT_LT(covered, 1900U);
   }
 }
 
-// Measurements on the upper half of the unit sphere reach over its edge by an arc of chord r_d:
-// they cover the samples with z >= -sin(2 asin(r_d / 2)), a share of (1 + sin(...)) / 2.
+// Measurements on the upper half of the unit sphere reach beyond its edge by an arc with chord r_d.
+// They cover samples with z >= -sin(2 asin(r_d / 2)), a fraction of (1 + sin(...)) / 2.
 TEST(CoverageMeter, CoversMeasuredHemisphereAndRim) {
   constexpr double distance = 0.2;
   std::vector<Vector3f> measured;
@@ -64,7 +64,7 @@ TEST(CoverageMeter, CoversMeasuredHemisphereAndRim) {
   evaluation::CoverageMeter meter(sphere(50'000), distance);
   meter.add(measured);
   const double rim = std::sin(2.0 * std::asin(0.5 * distance));
-  // 50,000 even samples resolve a share to about a row of them at the rim, 0.1 %.
+  // 50,000 even samples resolve the fraction to about one row of samples at the rim, 0.1%.
   EXPECT_NEAR(meter.share(), 0.5 * (1.0 + rim), 1e-3);
 }
 
@@ -91,8 +91,8 @@ TEST(FibonacciDirections, AreUnitVectorsAndSpreadEvenly) {
     }
   }
   EXPECT_LT(sum.norm() / count, 1e-3);
-  // A hexagonal packing of the sphere has a spacing of sqrt(8 pi / (sqrt(3) n)); the lattice
-  // keeps 80 % of it.
+  // A hexagonal packing of the sphere has a spacing of sqrt(8 pi / (sqrt(3) n)). The lattice
+  // reaches more than 80% of it.
   EXPECT_GT(nearest_pair, 0.8 * std::sqrt(8.0 * std::numbers::pi / (std::sqrt(3.0) * count)));
 }
 

@@ -17,7 +17,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-/// A cube around the origin, outward.
+/// Returns a cube around the origin, oriented outward.
 geometry::Mesh cube(double half) {
   geometry::Mesh mesh;
   for (int i = 0; i < 8; ++i) {
@@ -28,7 +28,7 @@ geometry::Mesh cube(double half) {
   return mesh;
 }
 
-/// A cube of edge 2 with a smaller one inside, which nothing outside can see.
+/// Returns a cube with edges of 2 m and a smaller one inside, which is not visible from outside.
 geometry::Mesh cube_in_a_cube() {
   geometry::Mesh mesh = cube(1.0);
   geometry::append(mesh, cube(0.3));
@@ -50,7 +50,7 @@ TEST(VisibleSamples, IncludeOnlyOuterSurface) {
   }
 }
 
-// From z >= 0 only, the bottom of a cube that stands on z = 0 is hidden.
+// From z >= 0, the bottom of a cube on the plane z = 0 is not visible.
 TEST(VisibleSamples, RespectAdmissibleViews) {
   geometry::Mesh mesh = cube(1.0);
   geometry::transform(mesh, Eigen::Affine3d(Eigen::Translation3d(0, 0, 1)));
@@ -84,8 +84,8 @@ evaluation::CaptureScan quick_scans(const sim::Scene& scene) {
   };
 }
 
-// With a spacing well below r_d and no noise, all that can be seen can be covered; the cube inside
-// (its share of the area is 0.09 / 1.09) cannot.
+// With a spacing well below r_d and without noise, the whole visible surface is attainable. The
+// inner cube, 0.09 / 1.09 of the area, is not.
 TEST(AttainableCoverage, IsVisibleFractionWithoutOtherLimits) {
   const geometry::Mesh mesh = cube_in_a_cube();
   const sim::Scene scene(mesh);
@@ -98,8 +98,8 @@ TEST(AttainableCoverage, IsVisibleFractionWithoutOtherLimits) {
   EXPECT_NEAR(attainable_coverage, 1.0 / 1.09, 1e-3);  // one sample is 3e-4
 }
 
-// Where the spacing exceeds r_d, holes stay between the stored points: one disc of radius r_d at
-// most every spacing^2 sqrt(3)/2, the densest packing.
+// If the spacing exceeds r_d, gaps remain between the stored points. The densest packing has at
+// most one disc of radius r_d for each spacing^2 sqrt(3)/2.
 TEST(AttainableCoverage, IsLimitedByPointSpacing) {
   const geometry::Mesh mesh = cube(1.0);
   const sim::Scene scene(mesh);
@@ -110,7 +110,7 @@ TEST(AttainableCoverage, IsLimitedByPointSpacing) {
   const double attainable_coverage = evaluation::marked_share(evaluation::attainable_samples(
       samples.points, is_visible, scene, quick_scans(scene), from_anywhere, config));
   EXPECT_LT(attainable_coverage, std::numbers::pi * 0.01 / (0.04 * std::sqrt(3.0) / 2.0));
-  EXPECT_GT(attainable_coverage, 0.5);  // random packings reach 0.55 of the plane
+  EXPECT_GT(attainable_coverage, 0.5);  // random packings cover 0.55 of the plane
 }
 
 TEST(AttainableCoverage, ExcludesSurfaceOutsideBox) {
@@ -123,7 +123,8 @@ TEST(AttainableCoverage, ExcludesSurfaceOutsideBox) {
   config.box = Eigen::AlignedBox3d(Vector3d(-2, -2, 0), Vector3d(2, 2, 2));
   const double attainable_coverage = evaluation::marked_share(evaluation::attainable_samples(
       samples.points, is_visible, scene, quick_scans(scene), from_anywhere, config));
-  // The upper half, and a rim of r_d below z = 0 on four sides of width 2: 0.4 / 24 of the area.
+  // The upper half, and a rim of r_d below z = 0 on four sides with a width of 2: 0.4 / 24 of the
+  // area.
   EXPECT_NEAR(attainable_coverage, 0.5 + 0.4 / 24.0, 4e-3);
 }
 

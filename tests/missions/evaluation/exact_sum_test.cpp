@@ -11,7 +11,7 @@
 namespace skycap::missions {
 namespace {
 
-/// Numbers of all sizes from 2^-60 to 2^60.
+/// Returns random numbers with magnitudes from 2^-60 to 2^60.
 std::vector<double> numbers(std::size_t count) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> mantissa(1.0, 2.0);
@@ -31,7 +31,7 @@ evaluation::ExactSum compute_sum(const std::vector<double>& all) {
 }
 
 TEST(ExactSum, KeepsSmallTerms) {
-  // 2^70 + 2^-70, times 3: the small parts would be lost in double precision.
+  // 2^70 + 2^-70, three times: double precision would lose the small terms.
   evaluation::ExactSum sum;
   for (int i = 0; i < 3; ++i) {
     sum.add(std::ldexp(1.0, 70));
@@ -47,7 +47,7 @@ TEST(ExactSum, KeepsSmallTerms) {
   EXPECT_EQ(evaluation::ExactSum().value(), 0.0);
 }
 
-// Property: any order and any parts give the same digits.
+// Property: the digits do not depend on order or partition.
 TEST(ExactSum, IsIndependentOfOrderAndPartition) {
   std::vector<double> all = numbers(10'000);
   const evaluation::ExactSum::Digits digits = compute_sum(all).all_digits();

@@ -18,7 +18,7 @@ using evaluation::ReachableSpace;
 using tests::Room;
 using tests::room_mesh;
 
-/// Straight ways that keep the radius.
+/// Accepts straight paths that keep the radius from the surface.
 ReachableSpace::Joins keeping(double radius, const geometry::MeshDistance& distance) {
   return [&distance, radius](const Vector3d& a, const Vector3d& b) {
     return distance.keeps(a, b, radius);
@@ -43,8 +43,8 @@ TEST(ReachableSpace, ExcludesSealedRooms) {
   }
 }
 
-// The door decides: wider than the ball by 3.5 cells of an eighth of its radius it counts, narrower
-// than the ball it does not.
+// The door decides: if it is 3.5 cells (an eighth of the radius each) wider than the ball, the room
+// counts. If it is narrower than the ball, it does not.
 TEST(ReachableSpace, IncludesRoomsWithWideDoors) {
   Room room{.door_width = 5.0, .door_height = 5.0};
   EXPECT_TRUE(leads_inside(room_mesh(room), {.radius = 2.0}));
@@ -70,7 +70,7 @@ TEST(ReachableSpace, StartsAtConfiguredPosition) {
   EXPECT_FALSE(leads_inside(sealed, outside));
 }
 
-// A start within a wall leads nowhere.
+// From a start inside a wall, nothing is reachable.
 TEST(ReachableSpace, IsEmptyWhenStartIsEnclosed) {
   const geometry::Mesh mesh = room_mesh({});
   const auto nowhere = [](const Vector3d&, const Vector3d&) { return false; };
@@ -82,7 +82,8 @@ TEST(ReachableSpace, IsEmptyWhenStartIsEnclosed) {
   EXPECT_FALSE(is_empty({.radius = 1.0}));
 }
 
-// A bell that is open below: a way leads in under its rim, unless that is too low.
+// A bell that is open at the bottom: a path leads in under its rim, unless the minimum height
+// prevents it.
 TEST(ReachableSpace, RespectsHeightLimits) {
   geometry::Mesh bell = sim::models::box({-10, -10, 20}, {10, 10, 21});
   for (const double x : {-10.0, 9.0}) {
@@ -97,7 +98,7 @@ TEST(ReachableSpace, RespectsHeightLimits) {
   EXPECT_TRUE(leads_inside(bell, {.radius = 1.0, .min_height = 10.5}, {0, 0, 40}));
 }
 
-/// Blocks at random in a room with a door: passages of all widths.
+/// Returns a room with a door and random blocks, which create passages of all widths.
 geometry::Mesh cluttered_room(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   const auto draw = [&](double low, double high) {
@@ -112,7 +113,7 @@ geometry::Mesh cluttered_room(std::uint64_t seed) {
   return mesh;
 }
 
-/// The twin: nodes of a plain grid that keep `clearance`, connected with the grid's corner.
+/// Reference: nodes of a plain grid that keep `clearance` and are connected with the grid corner.
 class GridFlood {
  public:
   static constexpr int count = 36;
@@ -147,8 +148,8 @@ class GridFlood {
   std::vector<bool> is_reached;
 };
 
-// Between two grids: one that keeps so much more that its ways are the cells' too, and one that
-// keeps so much less that the cells' ways are its own.
+// The result is between two grids: a stricter one, whose paths are also paths of the cells, and a
+// looser one, which contains all paths of the cells.
 TEST(ReachableSpace, LiesBetweenStricterAndLooserGrids) {
   constexpr double radius = 0.8;
   for (const std::uint64_t seed : {1, 2}) {
@@ -223,7 +224,7 @@ TEST(ReachableSpace, RejectsCorruptedFile) {
   EXPECT_FALSE(ReachableSpace::read(""));
   EXPECT_FALSE(ReachableSpace::read(whole.substr(0, whole.size() - 4)));
   EXPECT_FALSE(ReachableSpace::read(whole + "more"));
-  // The mark, the cells' size and number, and cells: none may be another.
+  // File signature, cell size, cell count and cells: none of them may differ.
   for (const std::size_t at : {0UL, 23UL, 48UL, 56UL, 64UL, whole.size() / 2, whole.size() - 1}) {
     std::string other = whole;
     other[at] = static_cast<char>(other[at] ^ 0x40);

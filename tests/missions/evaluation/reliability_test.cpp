@@ -23,7 +23,7 @@ geometry::SurfaceSamples samples_at(std::initializer_list<float> positions) {
   return samples;
 }
 
-// A thin wall: its other side is believed something else. One sample is beyond all patches, one
+// The two sides of a thin wall have different estimates. One sample is beyond all patches, and one
 // does not count.
 TEST(Reliability, UsesNearestPatchWithSameOrientation) {
   const std::vector<EstimatedPatch> estimate{
@@ -42,14 +42,15 @@ TEST(Reliability, UsesNearestPatchWithSameOrientation) {
   EXPECT_NEAR(found.error, (0.05) / 5.0, 1e-6);
 }
 
-// Whoever is right of each probability has no error, whoever is sure of all has what it is off by.
+// Calibrated probabilities have no error. Full certainty has the error of its wrong estimates.
 TEST(Reliability, HasNoErrorForCalibratedProbabilities) {
   std::vector<EstimatedPatch> estimate, sure;
   geometry::SurfaceSamples samples;
   std::vector<std::uint8_t> is_covered;
   for (int position = 0; position < 1000; ++position) {
     const auto x = static_cast<float>(position);
-    const int tenth = position % 10;  // covered in (place / 10) % 10 < tenth: a share of tenth / 10
+    // Covered if (position / 10) % 10 < tenth: a fraction of tenth / 10.
+    const int tenth = position % 10;
     estimate.push_back(patch_at(x, 1.0F, static_cast<float>(tenth) / 10.0F + 1e-4F));
     sure.push_back(patch_at(x, 1.0F, 1.0F));
     samples.points.emplace_back(x, 0.0F, 0.0F);

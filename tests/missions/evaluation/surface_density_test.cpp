@@ -90,7 +90,7 @@ TEST(SurfaceDensity, IsThatOfAnEvenGridUpToTheEdges) {
   EXPECT_FALSE(meter.figures(1.0, SurfaceClass::wall));
 }
 
-// With points only on the floor, roofs are dense, and walls only at their base.
+// With points only on the floor, level surface is dense, and walls only at their base.
 TEST(SurfaceDensity, TellsWallsFromLevelSurface) {
   std::vector<Vector3f> points;
   for (int x = 0; x < 100; ++x) {

@@ -19,8 +19,8 @@ using testing::HasSubstr;
 using testing_support::thrown_message;
 using tests::TestFolder;
 
-/// A room of 20 m with a window into it; its planners look from 6 m. No place that is looked from
-/// is on its surface to the last bit.
+/// A room of 20 m with a window. Its planners use a view distance of 6 m. The position offset keeps
+/// view positions from lying exactly on a surface.
 class WindowedRoom {
  public:
   explicit WindowedRoom(double width, double height = 5.0) {
@@ -31,7 +31,7 @@ class WindowedRoom {
 
   config::MissionSetup mission(const std::vector<config::KeyOverride>& more) const {
     return config::parse_mission(
-        "scene: {model: room.ply, position: [0, 0, -0.67]}\n"  // the floor inside at z = 0
+        "scene: {model: room.ply, position: [0, 0, -0.67]}\n"  // the floor inside is at z = 0
         "sensor: {width: 160, height: 100, noise: {sigma: 0.05}}\n"
         "planner: {density: 25, resolution_radius: 0.7, view_distance: 6, occluder_spacing: 0.4,\n"
         "          max_attempts: 2, occlusion_search_distance: 6}\n"
@@ -56,8 +56,8 @@ bool is_on_inside(const Eigen::Vector3f& point) {
       .contains(point);
 }
 
-// What is in a sealed room counts neither as visible nor as attainable, whatever fits; all of the
-// outside does. Walls of closed solids have nothing else.
+// The interior of a sealed room is neither visible nor attainable for any radius. The whole
+// exterior is. The walls of closed solids have no other surface.
 TEST(SurveyScene, ExcludesSealedRoomsFromCoverage) {
   const WindowedRoom sealed(0.0);
   const evaluation::SurveyScene scene = sealed.scene({});
@@ -78,11 +78,11 @@ TEST(SurveyScene, ExcludesSealedRoomsFromCoverage) {
     }
   }
   EXPECT_GT(outside, 1000U);
-  EXPECT_LT(missed, outside / 100);  // 60 directions are few
+  EXPECT_LT(missed, outside / 100);  // 60 directions are few, so some samples are missed
 }
 
-// A way in that is 3 m wide is one for a ball of 1 m, and none for a ball of 2 m, for the
-// evaluation and for planners alike.
+// An opening 3 m wide is passable for a ball of 1 m but not for one of 2 m. This applies to the
+// evaluation and to the planners.
 TEST(SurveyScene, IncludesRoomsPassableForRadius) {
   const WindowedRoom room(3.0);
   const auto seen_inside = [&](const char* radius) {
@@ -92,7 +92,7 @@ TEST(SurveyScene, IncludesRoomsPassableForRadius) {
     std::size_t seen = 0, inside = 0;
     for (std::size_t i = 0; i < visible.size(); ++i) {
       const Eigen::Vector3f& point = scene.samples().points[i];
-      if (point.y() < 5.0F || !is_on_inside(point)) continue;  // hardly seen through the window
+      if (point.y() < 5.0F || !is_on_inside(point)) continue;  // hardly visible through the window
       ++inside;
       seen += visible[i];
     }
@@ -100,7 +100,7 @@ TEST(SurveyScene, IncludesRoomsPassableForRadius) {
     return static_cast<double>(seen) / static_cast<double>(inside);
   };
   EXPECT_GT(seen_inside("0"), 0.95);
-  EXPECT_GT(seen_inside("1"), 0.85);  // places keep a metre from the walls
+  EXPECT_GT(seen_inside("1"), 0.85);  // view positions keep 1 m from the walls
   EXPECT_LT(seen_inside("2"), 0.2);
 }
 
@@ -113,7 +113,7 @@ TEST(SurveyScene, RejectsStartInsideWall) {
               HasSubstr("start.position is inside the model"));
 }
 
-// The file stands for the mission and its model: whoever reads it computes nothing.
+// The file is bound to the mission and its model. Reading it avoids the computation.
 TEST(SurveyScene, CachesReachableSpaceInFile) {
   const WindowedRoom room(3.0);
   const TestFolder folder;
@@ -121,7 +121,7 @@ TEST(SurveyScene, CachesReachableSpaceInFile) {
   const std::vector<config::KeyOverride> wide{{"--set", "evaluation.passage_radius", "1"}};
   EXPECT_TRUE(room.scene(wide, kept).is_reachable({0, 0, 5}));
   ASSERT_TRUE(std::filesystem::exists(kept));
-  // As it is kept, whatever would be found.
+  // The stored result is used, even with a different radius.
   EXPECT_TRUE(
       room.scene({{"--set", "evaluation.passage_radius", "2"}}, kept).is_reachable({0, 0, 5}));
   folder.write("reached", "spoiled");
@@ -130,7 +130,7 @@ TEST(SurveyScene, CachesReachableSpaceInFile) {
   EXPECT_GT(std::filesystem::file_size(kept), 100U);
 }
 
-/// A cube of 4 m that is surveyed, and one that stands 6 m beside it, in the way.
+/// Returns a mission with a surveyed cube of 4 m and a neighbouring cube 6 m away as an obstacle.
 std::string two_cubes(const TestFolder& folder, const char* neighbours) {
   geometry::Mesh cube = sim::models::box({-2, -2, 0}, {2, 2, 4});
   geometry::write_mesh(folder / "cube.obj", cube);
@@ -143,7 +143,8 @@ std::string two_cubes(const TestFolder& folder, const char* neighbours) {
          "\nevaluation: {coverage_distance: 0.1, samples: 2000, passage_radius: 0.5}\n";
 }
 
-// Rays end on what stands beside the target, the sensor keeps off it, and none of it is judged.
+// Rays end on the neighbours and the sensor keeps its distance from them, but they are not
+// evaluated.
 TEST(SurveyScene, ExcludesNeighboursFromEvaluation) {
   const TestFolder folder;
   const auto make_mission = [&](const char* neighbours) {
@@ -157,7 +158,7 @@ TEST(SurveyScene, ExcludesNeighboursFromEvaluation) {
   EXPECT_EQ(with_surroundings.samples().points, alone.samples().points);
   EXPECT_FALSE(alone.scene().is_blocked({6, 0, 2}, {14, 0, 2}));
   EXPECT_TRUE(with_surroundings.scene().is_blocked({6, 0, 2}, {14, 0, 2}));
-  // The target, which is in the way as well, is not there twice.
+  // The target, which is an obstacle as well, is not included twice.
   EXPECT_EQ(scene::prior_neighbours(make_mission("true").scene()).triangles.size(), 12U);
   EXPECT_TRUE(scene::prior_neighbours(make_mission("false").scene()).triangles.empty());
   const auto allows = [](const evaluation::SurveyScene& scene, double x) {

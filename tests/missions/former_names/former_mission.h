@@ -1,11 +1,11 @@
-/// A mission as version 0.1 wrote it.
+/// A mission file of version 0.1.
 #pragma once
 
 #include <string>
 
 namespace skycap::tests {
 
-/// A mission of version 0.1 with each key and value that has another name now, and comments.
+/// Mission of version 0.1 with all renamed keys and values, and with comments.
 inline const std::string former_mission =
     "# A tower.  Its planner.least_gain stays in this comment.\n"
     "scene: {model: 'builtin:teapot', longest_side: 1.0}\n"

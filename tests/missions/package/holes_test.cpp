@@ -13,7 +13,7 @@ namespace {
 using survey::surfel::EstimatedPatch;
 using survey::surfel::MissingReason;
 
-/// A floor of unit patches with holes where `find_reason(x, y)` says so.
+/// Returns a floor of unit patches with holes where find_reason(x, y) gives a reason.
 std::vector<EstimatedPatch> make_floor(int size, const auto& find_reason) {
   std::vector<EstimatedPatch> patches;
   for (int x = 0; x < size; ++x) {
@@ -52,7 +52,7 @@ TEST(Holes, AreConnectedAndSortedByArea) {
   EXPECT_DOUBLE_EQ(missing.smaller_area, 1.0);
 }
 
-// What hangs together for different reasons is told apart.
+// Adjacent patches with different reasons form separate holes.
 TEST(Holes, AreSplitByReason) {
   const MissingSurface missing = missing_surface(
       make_floor(10,
@@ -65,8 +65,8 @@ TEST(Holes, AreSplitByReason) {
   EXPECT_NE(missing.holes[0].reason, missing.holes[1].reason);
 }
 
-// Guessed pieces of 4 m lie 5 m apart and make one hole; of pieces of half a metre, 2 m apart, each
-// is for itself. Most pieces have a side of one metre.
+// Predicted patches of 4 m at a distance of 5 m form one hole. Patches of 0.5 m at a distance of 2
+// m are separate holes. Most patches have a side of 1 m.
 TEST(Holes, LinkPatchesByPatchSize) {
   std::vector<EstimatedPatch> patches =
       make_floor(20, [](int, int) { return MissingReason::none; });
@@ -90,7 +90,7 @@ TEST(Holes, LinkPatchesByPatchSize) {
   EXPECT_DOUBLE_EQ(missing.smaller_area, 1.0);
 }
 
-// Whatever the pieces are: nothing that is missing is lost or counted twice.
+// For any patches, the missing area is neither lost nor counted twice.
 TEST(Holes, SumToMissingArea) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<float> coordinate(0.0F, 20.0F), share(0.0F, 1.0F);
@@ -133,7 +133,7 @@ TEST(TruePatches, HaveSamplesWithEqualAreas) {
   EXPECT_EQ(patches[0].reason, MissingReason::none);
   EXPECT_EQ(patches[1].reason, MissingReason::never_seen);
   EXPECT_EQ(patches[2].reason, MissingReason::unreachable);
-  // Half of the surface is missing, whoever asks.
+  // Half of the surface is missing, both in the estimate and in the ground truth.
   EXPECT_DOUBLE_EQ(missing_surface(patches, {}).area, 8.0);
   EXPECT_EQ(true_patches(samples, 8.0, is_covered, {})[2].reason, MissingReason::never_seen);
 }

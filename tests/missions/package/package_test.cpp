@@ -28,7 +28,7 @@ using Eigen::Vector3f;
 using Json = nlohmann::json;
 using testing::HasSubstr;
 
-/// A survey of two views with numbers that have no short decimal form.
+/// Returns a survey of two views with numbers that have no short decimal form.
 session::SurveyRecord two_views() {
   session::SurveyRecord record;
   record.seed = 9;
@@ -53,7 +53,7 @@ session::SurveyRecord two_views() {
   return record;
 }
 
-/// A mission of few words.
+/// Returns a minimal mission.
 config::MissionSetup make_mission(const std::string& model = "builtin:teapot") {
   return config::parse_mission(
       "scene: {model: '" + model + "'}\nevaluation: {coverage_distance: 0.01}\n", "m.yaml");
@@ -122,7 +122,7 @@ TEST(Package, WritesAllSummaryFields) {
   EXPECT_EQ(summary["planning_time_parts_s"]["insert"], 0.75);
   EXPECT_EQ(summary["planning_time_parts_s"]["select"], 0.125);
   EXPECT_TRUE(summary["attainable_coverage"].is_null());
-  EXPECT_FALSE(summary.contains("route_length_m"));  // nothing was flown
+  EXPECT_FALSE(summary.contains("route_length_m"));  // there is no flight
   ASSERT_EQ(summary["per_view"].size(), 2U);
   for (const char* field : {"view", "position", "direction", "points_new", "points", "frontiers",
                             "coverage", "planning_time_s", "distance_m"}) {
@@ -150,17 +150,18 @@ TEST(Package, WritesCloudWithNormalsTowardsSensors) {
   {
     geometry::OutputFolder out(folder.path());
     package::stage_package(make_mission(), two_views(), {}, 1, out);
-    EXPECT_FALSE(std::filesystem::exists(folder / "cloud.ply"));  // not before commit()
+    // Files appear only after commit().
+    EXPECT_FALSE(std::filesystem::exists(folder / "cloud.ply"));
     out.commit();
   }
   const auto cloud = geometry::read_cloud(folder / "cloud.ply");
   EXPECT_EQ(cloud.positions, two_views().cloud.positions);
   EXPECT_EQ(cloud.views, two_views().cloud.views);
   ASSERT_EQ(cloud.normals.size(), 3U);
-  EXPECT_GT(cloud.normals[2].z(), 0.99F);  // seen from straight above
+  EXPECT_GT(cloud.normals[2].z(), 0.99F);  // seen from directly above
 }
 
-// The planner's belief is written as numbers that fit together and as a map coloured by them.
+// The planner's estimate is written as consistent numbers and as a map with corresponding colours.
 TEST(Package, WritesPlannerEstimate) {
   const config::MissionSetup mission = config::parse_mission(
       tests::quick_mission(), "m.yaml",
@@ -180,7 +181,8 @@ TEST(Package, WritesPlannerEstimate) {
     EXPECT_GE(share, 0.0) << reason;
     missing += share.get<double>();
   }
-  EXPECT_NEAR(missing + estimate["estimated_coverage"].get<double>(), 1.0, 1e-5);  // float areas
+  // Areas are floats.
+  EXPECT_NEAR(missing + estimate["estimated_coverage"].get<double>(), 1.0, 1e-5);
   EXPECT_EQ(estimate["stop"], "view_limit");
   EXPECT_GT(estimate["next_gain"], 0.0);
   EXPECT_EQ(estimate["noise_m"], record.estimate->noise);
@@ -196,7 +198,7 @@ TEST(Package, WritesPlannerEstimate) {
   EXPECT_EQ(std::ranges::count_if(map.colours, is_red), predicted);
 }
 
-// One sample of each kind, read back by the reader of any properties.
+// One sample of each kind, read back by the general PLY reader.
 TEST(Package, WritesGroundTruthCoverage) {
   const package::TrueCoverage truth{
       .samples = {.points = {{1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}},
@@ -220,7 +222,7 @@ TEST(Package, WritesGroundTruthCoverage) {
   EXPECT_THAT(table.columns[3], testing::ElementsAre(1, 1, 1, 0));
   EXPECT_THAT(table.columns[4], testing::ElementsAre(1, 1, 0, 0));
   const auto colours = geometry::read_cloud(folder / "true_coverage.ply").colours;
-  EXPECT_EQ(std::set(colours.begin(), colours.end()).size(), 4U);  // one for each kind
+  EXPECT_EQ(std::set(colours.begin(), colours.end()).size(), 4U);  // one colour for each kind
 }
 
 TEST(Package, OmitsCoverageMapWithoutEstimate) {
@@ -233,8 +235,7 @@ TEST(Package, OmitsCoverageMapWithoutEstimate) {
       Json::parse(tests::read_content(folder.path() / "summary.json"))["estimate"].is_null());
 }
 
-// On a sphere the normal at a point is the point itself; on its inside, seen from the centre, the
-// opposite.
+// On a sphere the normal equals the position. For views from the inside it is the opposite.
 TEST(CloudNormals, MatchSphereAndFaceSensor) {
   geometry::PointCloud cloud;
   for (const Vector3d& direction : evaluation::fibonacci_directions(5000)) {
@@ -246,9 +247,9 @@ TEST(CloudNormals, MatchSphereAndFaceSensor) {
   ASSERT_GT(cloud.size(), 0U);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Vector3f& p = cloud.positions[i];
-    if (std::abs(p.z()) < 0.05F) continue;  // sensors see the rim edge-on: either side may win
+    if (std::abs(p.z()) < 0.05F) continue;  // sensors see the rim edge-on, so both signs are valid
     const float towards = p.z() > 0.0F ? 1.0F : -1.0F;
-    // A symmetric cap's plane is exact; thinning makes it slightly lopsided.
+    // The plane of a symmetric cap is exact. Downsampling makes it slightly asymmetric.
     EXPECT_GT(towards * normals[i].dot(p), 0.99F) << "point " << i;
   }
 }
@@ -304,7 +305,7 @@ TEST(OutputFolder, ReportsUnwritableFolders) {
   }
 }
 
-// FIPS 180-4's examples: one block, and two.
+// Examples of FIPS 180-4: one block and two blocks.
 TEST(Sha256, MatchesStandardExamples) {
   const auto of = [](std::string_view text) {
     return support::sha256(std::as_bytes(std::span(text)));

@@ -17,7 +17,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-/// The twin of page/cloud.js, written from the header's words: bit by bit.
+/// Decodes bit by bit, independently of page/cloud.js, according to the description in the header.
 struct Decoded {
   std::vector<Vector3d> positions;
   std::vector<std::vector<std::uint16_t>> attributes;
@@ -58,7 +58,7 @@ Decoded decode(const CloudCode& code) {
   return decoded;
 }
 
-/// Points on a sphere with noise, as a survey leaves them.
+/// Returns noisy points on a sphere, like those of a survey.
 std::vector<Vector3f> sphere(std::size_t count, double radius, double noise) {
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal;
@@ -78,7 +78,7 @@ std::vector<std::uint16_t> numbers(std::size_t count) {
   return values;
 }
 
-// Every point comes back within half a step in each axis, with its own attributes.
+// Each point is decoded within half a step in each axis, with its own attributes.
 TEST(CloudCode, ReadsBackWithinHalfAStep) {
   const auto points = sphere(5000, 20.0, 0.01);
   const auto ids = numbers(points.size());
@@ -93,7 +93,7 @@ TEST(CloudCode, ReadsBackWithinHalfAStep) {
   std::vector<bool> is_found(points.size(), false);
   for (std::size_t i = 0; i < points.size(); ++i) {
     EXPECT_EQ(decoded.attributes[1][i], decoded.attributes[0][i] % 4);
-    // Five points share an id: exactly one of them is here.
+    // Five points share this id. The decoded point must be close to one of them.
     bool is_there = false;
     for (std::size_t k = decoded.attributes[0][i]; k < points.size(); k += 1000) {
       const double off = (decoded.positions[i] - points[k].cast<double>()).cwiseAbs().maxCoeff();
@@ -105,16 +105,17 @@ TEST(CloudCode, ReadsBackWithinHalfAStep) {
   }
 }
 
-// Spacing of random points on a surface: two in a cube of sqrt(2) spacings.
+// Spacing of random points on a surface: two points in a cube with a side of sqrt(2) spacings.
 TEST(CloudCode, UsesStepOfEighthOfSpacing) {
   const CloudCode code = encode_cloud(sphere(20'000, 20.0, 0.0), {}, 100'000);
-  const double usual = std::sqrt(4.0 * std::numbers::pi * 400.0 / 20'000);  // of a square grid
+  // Spacing of a square grid.
+  const double usual = std::sqrt(4.0 * std::numbers::pi * 400.0 / 20'000);
   EXPECT_GT(code.spacing, 0.4 * usual);
   EXPECT_LT(code.spacing, 1.5 * usual);
   EXPECT_DOUBLE_EQ(code.step, code.spacing / 8.0);
 }
 
-// Two far apart among many: cells cannot be finer than 2^-16 of the whole.
+// Two distant points among many: cells cannot be smaller than 2^-16 of the extent.
 TEST(CloudCode, LimitsStepByExtent) {
   std::vector<Vector3f> points = sphere(20'000, 1.0, 0.0);
   points.emplace_back(1e5F, 0.0F, 0.0F);
@@ -124,7 +125,7 @@ TEST(CloudCode, LimitsStepByExtent) {
   EXPECT_NEAR((decode(code).positions.back() - points.back().cast<double>()).norm(), 0.0, 3.0);
 }
 
-// A thinned cloud is spread as the whole: each octant keeps its share.
+// A downsampled cloud has the same distribution: each octant keeps its fraction.
 TEST(CloudCode, DownsamplesEvenly) {
   const auto points = sphere(40'000, 20.0, 0.0);
   const CloudCode code = encode_cloud(points, {}, 4000);
@@ -138,8 +139,9 @@ TEST(CloudCode, DownsamplesEvenly) {
   EXPECT_NEAR(static_cast<double>(kept), static_cast<double>(all) / 10.0, 12.0);
 }
 
-/// Each point is of the nearest of 40 views around the sphere or, as often, of another one near by;
-/// a view has a usual incidence, from which a third of its points stray by a step.
+/// Returns view and incidence values like those of a survey. Each point belongs to the nearest of
+/// 40 views around the sphere or, with equal probability, to another view nearby. A view has a
+/// typical incidence angle, from which a third of its points differ by one step.
 std::vector<std::vector<std::uint16_t>> survey_attributes(const std::vector<Vector3f>& points) {
   std::mt19937_64 random(4);
   std::vector<std::vector<std::uint16_t>> values(3);
@@ -153,7 +155,8 @@ std::vector<std::vector<std::uint16_t>> survey_attributes(const std::vector<Vect
   return values;
 }
 
-// A building's kind of surface: the bound of the report's size, of characters on the page.
+// Surface like that of a building. The limit on the number of characters follows from the size
+// limit of the report.
 TEST(CloudCode, IsCompact) {
   const auto points = sphere(200'000, 20.0, 0.01);
   const auto values = survey_attributes(points);

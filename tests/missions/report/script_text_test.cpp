@@ -10,14 +10,15 @@ using testing::HasSubstr;
 using testing::Not;
 using Json = nlohmann::ordered_json;
 
-// HTML 13.2.5.4: within a script only "</script" and "<!--" mean anything, and both begin with '<'.
+// HTML 13.2.5.4: within a script only "</script" and "<!--" have a meaning, and both begin with
+// '<'.
 TEST(ScriptJson, EscapesScriptEndAndComments) {
   const Json json = {{"name", "</script><!-- \u2028 \u2029 <script>"}, {"</script>", 1}};
   const std::string text = script_json(json);
   EXPECT_THAT(text, Not(HasSubstr("<")));
   EXPECT_THAT(text, Not(HasSubstr("\u2028")));
   EXPECT_THAT(text, Not(HasSubstr("\u2029")));
-  EXPECT_EQ(Json::parse(text), json);  // and still says the same
+  EXPECT_EQ(Json::parse(text), json);  // the content is unchanged
 }
 
 TEST(HtmlText, EscapesSpecialCharacters) {

@@ -28,14 +28,14 @@ std::size_t count(const std::string& text, const std::string& word) {
   return found;
 }
 
-/// What the page says, as a browser's JSON.parse() would read it.
+/// Returns the data of the HTML report, as JSON.parse() in a browser reads them.
 Json extract_data(const std::string& page) {
   const std::string begin = "<script type=\"application/json\" id=\"data\">";
   const std::size_t at = page.find(begin) + begin.size();
   return Json::parse(page.substr(at, page.find("</script>", at) - at));
 }
 
-/// A survey and what it left.
+/// A survey and its results.
 struct Planned {
   explicit Planned(const std::string& mission, const std::vector<std::string>& more = {},
                    std::stop_token stop = {}) {
@@ -74,8 +74,7 @@ TEST(SurveyReport, ShowsOnlyFiguresOfSummary) {
   }
 }
 
-// The table's sum is the missing share of the surface, for planners that believe and those that
-// do not.
+// The table sums to the missing fraction of the surface, for planners with and without an estimate.
 TEST(SurveyReport, HasHolesThatSumToMissingFraction) {
   for (const char* planner : {"skycap", "see++"}) {
     const Planned survey(tests::quick_mission(), {"--planner", planner});
@@ -98,7 +97,7 @@ TEST(SurveyReport, IsOmittedOnRequest) {
   EXPECT_FALSE(std::filesystem::exists(survey.folder.path() / "out" / "report.html"));
 }
 
-// Somebody waits for the program to end.
+// By default an interrupted survey has no report, because the user waits for the program to end.
 TEST(SurveyReport, IsWrittenForInterruptedSurveyOnRequest) {
   std::stop_source stop;
   stop.request_stop();
@@ -112,7 +111,7 @@ TEST(SurveyReport, IsWrittenForInterruptedSurveyOnRequest) {
   EXPECT_EQ(data["summary"]["stop_reason"], "interrupted");
 }
 
-// The camera's keys are no settings of such a survey, and would be refused beside the lidar.
+// Camera keys are not part of such a survey and would conflict with the lidar.
 TEST(SurveyReport, IsWrittenForLidarSurvey) {
   const Planned survey(
       "scene: {model: 'builtin:teapot', longest_side: 10.0}\n"
@@ -128,8 +127,8 @@ TEST(SurveyReport, IsWrittenForLidarSurvey) {
   EXPECT_FALSE(settings.contains("sensor.width"));
 }
 
-// A name ends no script and makes no element, in the title as in the data. A mission file's name
-// has no '/', but a summary may come from anywhere.
+// A mission name cannot end a script or create an element, neither in the title nor in the data.
+// The name of a mission file cannot contain '/', but a summary may come from anywhere.
 TEST(SurveyReport, EscapesMissionNames) {
   const Planned survey(tests::quick_mission());
   const std::string plain = survey.page(), file = survey.folder / "out/summary.json";
@@ -145,7 +144,7 @@ TEST(SurveyReport, EscapesMissionNames) {
   EXPECT_EQ(extract_data(page)["title"], summary["mission"]);
 }
 
-// Nothing but our own scripts may run, and nothing may be fetched.
+// Only Skycap's own scripts may run, and nothing may be fetched.
 TEST(SurveyReport, HasStrictPolicyAndNoExternalLinks) {
   const std::string page = Planned(tests::quick_mission()).page();
   EXPECT_THAT(page, HasSubstr("default-src 'none'"));
@@ -164,7 +163,7 @@ TEST(SurveyReport, IsWrittenWithoutCloud) {
   EXPECT_EQ(extract_data(survey.page())["clouds"]["measured"]["points"], 0);
 }
 
-// Trials and a survey in the same folder have a page each.
+// Trials and a survey in the same folder have separate reports.
 TEST(TrialsReport, IsWrittenSeparatelyFromSurveyReport) {
   const Planned survey(tests::quick_mission(), {"--max-views", "3"});
   const auto trials =
@@ -183,7 +182,7 @@ TEST(TrialsReport, IsWrittenSeparatelyFromSurveyReport) {
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_TRUE(tests::read_content(file) == page);
   EXPECT_EQ(extract_data(survey.page())["kind"], "survey");
-  // Which of the two should the page be?
+  // With one output file, the report would be ambiguous.
   const auto one = tests::run_skycap({"report", survey.folder / "out", "--out", "x.html"});
   EXPECT_EQ(one.exit_code, 2);
   EXPECT_THAT(one.err, HasSubstr("contains several reports"));
@@ -238,7 +237,7 @@ TEST(View, ShowsMissionBeforeSurvey) {
   EXPECT_EQ(data["clouds"]["model"]["of"], 3000);
 }
 
-// Seen head-on, at 45 degrees, from behind, and by nobody.
+// Observed perpendicularly, at 45 degrees, from behind, and unobserved.
 TEST(PointFigures, ComputeIncidenceAngleToSensor) {
   geometry::AttributedCloud cloud;
   cloud.positions.assign(4, Eigen::Vector3f::Zero());
@@ -251,9 +250,8 @@ TEST(PointFigures, ComputeIncidenceAngleToSensor) {
   EXPECT_TRUE(std::isnan(ranges(cloud, views)[3]));
 }
 
-// The mean of four is twice as sure as one; along rays at 45 degrees (the middle of that step) the
-// noise across the surface is cos(45) of what it is head-on. A point that nobody saw counts
-// nowhere.
+// The mean of four points has half the error of one. For rays at 45 degrees (the middle of that
+// step), the error along the normal is cos(45) times the noise. Unobserved points are ignored.
 TEST(PointFigures, ReduceSurfaceErrorByNeighbours) {
   geometry::AttributedCloud cloud;
   cloud.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0.5F, 0.5F, 0}, {9, 9, 9}};
@@ -285,8 +283,8 @@ TEST(Verdict, AssignsLightsByThresholds) {
   const Json route = {{"min_clearance_m", 1.9}, {"sorties", Json::array()}, {"skipped_views", {1}}};
   const Json lights =
       verdict({{"flight", {{"clearance_m", {{"total", 2.0}}}, {"route", route}}}})["lights"];
-  EXPECT_EQ(lights[0]["light"], "red");    // less than was asked for
-  EXPECT_EQ(lights[1]["light"], "amber");  // a view that is left out
+  EXPECT_EQ(lights[0]["light"], "red");    // below the requested value
+  EXPECT_EQ(lights[1]["light"], "amber");  // a view is skipped
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What `skycap scan` writes, read by the libraries that its users read it with: PCL and MRPT.
+// PCL and MRPT, the libraries of the users, read the output of `skycap scan`.
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -37,7 +37,7 @@ using Eigen::Isometry3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-/// A tenth of a second inside of a sphere, moving, turning, and wrong about where it is.
+/// 0.1 s inside a sphere, with a moving and rotating platform and navigation errors.
 class ForeignReader : public testing::Test {
  protected:
   ForeignReader() {
@@ -64,7 +64,7 @@ class ForeignReader : public testing::Test {
     return path;
   }
 
-  /// Every field of every point, and no other field.
+  /// Expects each field of each point, and no other fields.
   void expect_fields(const pcl::PCLPointCloud2& cloud) const {
     ASSERT_EQ(cloud.width * cloud.height, returns.size());
     std::vector<std::string> names;
@@ -116,11 +116,12 @@ TEST_F(ForeignReader, ReadsEveryFieldOfPlyWithPcl) {
   expect_fields(cloud);
 }
 
-/// Standard deviation of points' distances from the centre of the sphere that was measured.
+/// Returns the standard deviation of the points' distances from the centre of the measured sphere.
 double scatter(const std::vector<Vector3d>& points) {
   double sum = 0.0, squares = 0.0;
   for (const Vector3d& point : points) {
-    const double error = (point - Vector3d(1, 2, 3)).norm() - 20.0;  // small: no cancellation
+    // Small values avoid cancellation.
+    const double error = (point - Vector3d(1, 2, 3)).norm() - 20.0;
     sum += error;
     squares += error * error;
   }
@@ -128,9 +129,9 @@ double scatter(const std::vector<Vector3d>& points) {
   return std::sqrt(squares / n - sum * sum / (n * n));
 }
 
-// The noise is in every file, and only once: sigma = 0.01 m along rays that meet the sphere within
-// 11 degrees of its normal. Its triangles are at most 2 mm inside of it. Four standard deviations
-// of the estimate from 8000 points, and 2 % for the angle.
+// Each file contains the noise exactly once: sigma = 0.01 m along rays that hit the sphere within
+// 11 degrees of its normal. The triangles are at most 2 mm inside it. The tolerance is four
+// standard deviations of the estimate from 8000 points, plus 2% for the angle.
 TEST_F(ForeignReader, FindsNoiseOnceInEveryFormat) {
   const sim::LidarFlight faultless{ground_truth, ground_truth, mount, mount};
   const auto cloud_path = [&](const std::string& format) {
@@ -169,7 +170,8 @@ Isometry3d eigen_pose(const mrpt::poses::CPose3D& pose) {
   return result;
 }
 
-// MRPT's own loader; the clouds of the pieces, put where the carrier believes to be, are the cloud.
+// Uses MRPT's own loader. The clouds of the pieces, at the estimated platform poses, form the
+// cloud.
 TEST_F(ForeignReader, ReadsPointPositionsOfRawlogWithMrpt) {
   mrpt::obs::CRawlog rawlog;
   ASSERT_TRUE(rawlog.loadFromRawLogFile(written("rawlog")));
@@ -195,8 +197,8 @@ TEST_F(ForeignReader, ReadsPointPositionsOfRawlogWithMrpt) {
   EXPECT_EQ(next, returns.size());
 }
 
-// The range image and what it says of its azimuths give the points again, to half a range step and
-// what the sensor moves within a shot.
+// The range image and its azimuths reproduce the points, up to half a range step and the sensor's
+// motion during a pulse.
 TEST_F(ForeignReader, ReadsRangeImagesOfRawlogWithMrpt) {
   mrpt::obs::CRawlog rawlog;
   ASSERT_TRUE(rawlog.loadFromRawLogFile(written("rawlog")));
@@ -229,7 +231,7 @@ TEST_F(ForeignReader, ReadsRangeImagesOfRawlogWithMrpt) {
   EXPECT_EQ(pixels, returns.size());
 }
 
-// The other way round: what PCL writes, in each of its three ways. A NaN is a pixel without return.
+// Reads files that PCL writes in its three formats. A NaN is a no-return pixel.
 TEST_F(ForeignReader, ReadsFilesWrittenByPcl) {
   pcl::PointCloud<pcl::PointNormal> cloud;
   std::mt19937_64 random(1);
@@ -250,7 +252,7 @@ TEST_F(ForeignReader, ReadsFilesWrittenByPcl) {
     std::size_t next = 0;
     for (const pcl::PointNormal& point : testing_support::not_empty(cloud)) {
       if (std::isnan(point.x)) continue;
-      // PCL writes eight digits of text.
+      // PCL writes text with eight digits.
       ASSERT_LT((read.positions[next] - point.getVector3fMap()).norm(),
                 variant == 0 ? 1e-5F : 1e-30F);
       ASSERT_LT((read.normals[next++] - Eigen::Vector3f(0.0F, 0.6F, 0.8F)).norm(), 1e-6F);
@@ -269,9 +271,9 @@ TEST_F(ForeignReader, ReadsBackSkycapFiles) {
   }
 }
 
-// MRPT turns the images into points by itself; they are on the sphere, where the carrier believes
-// that it is. Depths are rounded to 1 mm, half of which a slanted ray makes 0.7 mm; the largest of
-// the sphere's triangles are 6.2 mm inside of it.
+// MRPT projects the images to points, which are on the sphere at the estimated platform pose.
+// Depths are rounded to 1 mm, an error of up to 0.5 mm or 0.7 mm along a slanted ray. The largest
+// triangles are up to 6.2 mm inside the sphere.
 TEST_F(ForeignReader, ProjectsDepthImagesOntoSurfaceWithMrpt) {
   sim::DepthCameraConfig camera;
   camera.camera.width = 64;

@@ -1,5 +1,5 @@
-/// A reader of LAS files by the letter of the specification, for tests; it fails the test that it
-/// is used in where a file departs from it.
+/// Reader for LAS files that follows the specification strictly. A test fails if its file deviates
+/// from it.
 #pragma once
 
 #include <array>
@@ -35,7 +35,7 @@ struct LasPoint {
   double angle_deg, time;
 };
 
-/// A reader by the letter of the LAS 1.4 R15 specification: header, point formats 6 and 7.
+/// Strict reader for LAS 1.4 R15: header and point formats 6 and 7.
 struct LasFile {
   std::vector<LasPoint> points;
   std::string crs;

@@ -21,7 +21,8 @@ using geometry::View;
 
 constexpr double pi = std::numbers::pi;
 
-// Whatever the moment: on the circle or on the climb, at the given speed, nose along the way.
+// At any time, the platform is on the circle or climbing, at the set speed, with its nose in flight
+// direction.
 TEST(OrbitTrajectory, KeepsRadiusSpeedAndHeading) {
   const scan::OrbitOptions orbit{.centre = {5, -3, 2},
                                  .radius = 20,
@@ -63,7 +64,7 @@ TEST(OrbitTrajectory, FliesSingleCircleAtMinHeight) {
 
 class ScanRouteFile : public testing::Test {
  protected:
-  // A camera on a carrier at a view looks where the view does.
+  // Checks that a camera on a platform at a view has the view's direction.
   static void expect_view(const sim::Trajectory& platform, double time, const View& view) {
     const View seen = geometry::to_view(platform.pose(time) * scan::body_from_camera());
     EXPECT_TRUE(seen.position.isApprox(view.position, 1e-5)) << seen.position.transpose();
@@ -95,7 +96,7 @@ TEST_F(ScanRouteFile, FliesStraightBetweenViewsAtSetSpeed) {
                "0,10,0,5,-1,0,0,7\n1,10,8,5,-1,0,0,9\n2,10,8,5,0,-1,0,9\n");
   const scan::ScanRoute route =
       scan::read_scan_route(folder.path(), options, scan::Platform::gimbal);
-  // 8 m at 4 m/s, then a quarter turn at 1 rad/s.
+  // 8 m at 4 m/s, then a rotation by 90 degrees at 1 rad/s.
   EXPECT_THAT(route.image_times, testing::Pointwise(testing::DoubleNear(1e-9),
                                                     std::vector<double>{0.0, 2.0, 2.0 + 0.5 * pi}));
   EXPECT_TRUE(route.platform.pose(1.0).translation().isApprox(Vector3d(10, 4, 5), 1e-9));
@@ -119,7 +120,7 @@ TEST_F(ScanRouteFile, KeepsAirframeLevelWhenGimbalPitches) {
   EXPECT_TRUE(airframe.platform.pose(1.0).linear().isApprox(Eigen::Matrix3d::Identity(), 1e-5));
 }
 
-/// A trajectory of two seconds from one place to another, a picture taken at its end.
+/// Returns a trajectory of two seconds between two positions, with a capture at its end.
 std::string sortie(const Vector3d& from, const Vector3d& to, double start) {
   std::vector<flight::TimedState> states(2);
   states[0].time = start;
@@ -138,7 +139,7 @@ TEST_F(ScanRouteFile, FliesAllSortiesOfPackageInSequence) {
   options.speed = 2.0;
   const scan::ScanRoute route =
       scan::read_scan_route(folder.path(), options, scan::Platform::airframe);
-  // From the first one's end to the second one's begin it is 4 m.
+  // 4 m from the end of the first trajectory to the start of the second.
   EXPECT_THAT(route.image_times, testing::Pointwise(testing::DoubleNear(1e-6),
                                                     std::vector<double>{8.5, 8.5 + 2.0 + 2.0}));
   EXPECT_TRUE(route.platform.pose(7.5).translation().isApprox(Vector3d(2, 0, 10), 1e-6));
@@ -146,7 +147,7 @@ TEST_F(ScanRouteFile, FliesAllSortiesOfPackageInSequence) {
   EXPECT_NEAR(route.platform.end(), 12.5, 1e-6);
 }
 
-// Straight lines between the views of a flown survey lead through what stands there.
+// Straight lines between the views of a survey with a vehicle may cross the scene.
 TEST_F(ScanRouteFile, RejectsFlightPackageWithoutTrajectory) {
   folder.write("views.csv",
                "view,x,y,z,direction_x,direction_y,direction_z,points\n0,10,0,5,-1,0,0,7\n");
@@ -181,7 +182,7 @@ TEST_F(ScanRouteFile, FliesGeodeticWaypointsNoseForward) {
   EXPECT_NEAR(route.platform.end() - route.platform.start(), (distance + 2.0) / 2.0, 0.01);
   const Isometry3d last = route.platform.pose(route.platform.end());
   EXPECT_TRUE(last.translation().isApprox(Vector3d(distance, 0, 12), 1e-3));
-  EXPECT_TRUE(last.linear().isApprox(Eigen::Matrix3d::Identity(), 1e-6));  // still eastward
+  EXPECT_TRUE(last.linear().isApprox(Eigen::Matrix3d::Identity(), 1e-6));  // still to the east
   EXPECT_TRUE(route.image_times.empty());
 }
 

@@ -42,7 +42,7 @@ class ScanRunner : public testing::Test {
     return result;
   }
 
-  /// By its ending.
+  /// Selects the format by the file extension.
   std::shared_ptr<const scan::CloudFormat> format_for(const std::filesystem::path& file) const {
     if (file.extension() == ".e57") return scan::e57_format({.offset = far}, "test");
     return scan::las_format({.point_format = 6, .grid = {.offset = far}});
@@ -58,7 +58,8 @@ class ScanRunner : public testing::Test {
 
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / ("skycap_scan_" + std::to_string(getpid()));
-  const Vector3d far{474'500.0, 5'474'500.0, 120.0};  // UTM: single precision has half metres there
+  // UTM, where single precision has a resolution of 0.5 m.
+  const Vector3d far{474'500.0, 5'474'500.0, 120.0};
   const sim::Scene scene{sim::sphere(far, 20.0, 4), 1};
   const sim::Trajectory trajectory{
       {{5.0, far, Eigen::Quaterniond::Identity()},
@@ -84,12 +85,14 @@ TEST_F(ScanRunner, WritesEveryFieldOfReturnsToLas) {
   for (std::size_t i = 0; i < returns.size(); i += 37) {
     const LasPoint& point = file.points[i];
     const Vector3d expected = returns.origin + returns.points[i].cast<double>();
-    ASSERT_LT((point.position - expected).lpNorm<Eigen::Infinity>(), 0.51e-4);  // half a unit
+    // Half a unit of the last digit.
+    ASSERT_LT((point.position - expected).lpNorm<Eigen::Infinity>(), 0.51e-4);
     ASSERT_NEAR(point.intensity, 65535.0 * returns.intensities[i], 0.51);
     ASSERT_EQ(point.return_number, returns.return_numbers[i]);
     ASSERT_EQ(point.returns, returns.number_of_returns[i]);
     ASSERT_EQ(point.channel, returns.channels[i]);
-    ASSERT_NEAR(point.angle_deg, returns.scan_angles[i] * 57.29578, 0.0031);  // half a unit
+    // Half a unit of the last digit.
+    ASSERT_NEAR(point.angle_deg, returns.scan_angles[i] * 57.29578, 0.0031);
     ASSERT_EQ(point.time, returns.times[i]);
   }
 }
@@ -108,7 +111,8 @@ TEST_F(ScanRunner, WritesEveryReturnToE57) {
   while (reader.next(points)) {
     for (const Vector3d& position : points.positions) {
       const Vector3d expected = returns.origin + returns.points[next++].cast<double>();
-      ASSERT_LT((position - expected).lpNorm<Eigen::Infinity>(), 0.51e-4);  // half a unit
+      // Half a unit of the last digit.
+      ASSERT_LT((position - expected).lpNorm<Eigen::Infinity>(), 0.51e-4);
     }
   }
   EXPECT_EQ(next, returns.size());
@@ -144,7 +148,7 @@ TEST_F(ScanRunner, WritesValidFileWhenStopped) {
   EXPECT_GT(result.progress.points, 0U);
 }
 
-// From each checkpoint that a kill may leave behind, whatever was appended after it.
+// Resumes from each checkpoint that a kill may leave, with any data appended after it.
 TEST_F(ScanRunner, ResumesFromAnyCheckpointToSameBytes) {
   struct Checkpoint {
     scan::ScanProgress progress;

@@ -51,7 +51,7 @@ void obtain_bunny() {
 
 class ModelStore : public testing::Test {
  protected:
-  /// Puts a program of that name, a shell script, before all others.
+  /// Puts a shell script with this name first in PATH.
   void add_program(const std::string& name, const std::string& script) {
     fs::create_directories(folder_.path() / "bin");
     const std::string file = folder_.write("bin/" + name, "#!/bin/sh\n" + script);
@@ -82,7 +82,7 @@ TEST_F(ModelStore, ReportsFoldersForMissingModel) {
                     HasSubstr("bunny")));
 }
 
-// A model in a folder beside the current one, which no user has, is not the user's.
+// A model in a folder next to the current one is not a model of the user.
 TEST_F(ModelStore, IgnoresOtherFolders) {
   fs::create_directories(folder_.path() / "shared/models");
   fs::create_directories(folder_.path() / "project");
@@ -108,7 +108,7 @@ TEST_F(ModelStore, RejectsPackageWithWrongChecksum) {
               AllOf(HasSubstr("has the wrong checksum (SHA-256)"), HasSubstr("0cfb7a00")));
   EXPECT_FALSE(scene::is_stored("bunny") &&
                scene::find_model("bunny").string().starts_with(folder_ / "cache"));
-  EXPECT_TRUE(fs::is_empty(folder_.path() / "cache/skycap"));  // nothing half-made
+  EXPECT_TRUE(fs::is_empty(folder_.path() / "cache/skycap"));  // no partial files
 }
 
 TEST_F(ModelStore, ReportsNpmErrors) {
@@ -129,7 +129,7 @@ TEST(ExternalProgram, RunsInFolderWithoutShell) {
   EXPECT_EQ(support::run_external_program({"no-such-program"}, folder.path()).exit_code, 127);
 }
 
-/// The vertices' box of a placed mesh.
+/// Returns the bounding box of a placed mesh.
 Eigen::AlignedBox3d placed_box(scene::SceneOptions scene) {
   geometry::Mesh mesh{{{1, 2, 3}, {3, 2, 3}, {1, 6, 3}, {1, 2, 4}},
                       {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};  // 2 x 4 x 1
@@ -147,7 +147,7 @@ TEST(PlaceModel, PutsCentreOfBaseAtPosition) {
 
 TEST(PlaceModel, AppliesUpAxisRotationAndScale) {
   scene::SceneOptions scene;
-  scene.up_axis = scene::UpAxis::y;  // its y side, of 4, becomes the height
+  scene.up_axis = scene::UpAxis::y;  // the y extent of 4 becomes the height
   scene.longest_side = 1.0;
   EXPECT_LT((placed_box(scene).sizes() - Eigen::Vector3d(0.5, 0.25, 1)).norm(), 1e-12);
   scene.longest_side.reset();

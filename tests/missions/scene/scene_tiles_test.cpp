@@ -1,4 +1,4 @@
-// Scenes of tiles: which there are, and that nothing depends on which of them are in memory.
+// Scenes of tiles: the listed tiles, and results that do not depend on the tiles in memory.
 #include "missions/scene/scene_tiles.h"
 
 #include <cmath>
@@ -28,7 +28,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using tests::run_skycap;
 
-/// Four spheres in a row, 30 m apart, each a tile; and a scanner that sees 50 m far and flies 100 m
+/// Four spheres in a row, 30 m apart, one in each tile. A scanner with a range of 50 m flies 100 m
 /// along them.
 class TileScan : public tests::CubeScan {
  protected:
@@ -64,7 +64,8 @@ class TileScan : public tests::CubeScan {
   geometry::Mesh joined_;
 };
 
-// Whoever measures a piece of the flight has other tiles in memory than who measures all of it.
+// A process that measures a shard has other tiles in memory than one that measures the whole
+// flight.
 TEST_F(TileScan, WritesSameBytesForAnyNumberOfPieces) {
   ASSERT_EQ(run_skycap(scan("whole", clouds_)).exit_code, 0);
   for (const char* const tile_count : {"2", "4", "9"}) {
@@ -75,7 +76,7 @@ TEST_F(TileScan, WritesSameBytesForAnyNumberOfPieces) {
   }
 }
 
-// A twin: the same triangles as one mesh.
+// Reference: the same triangles in one mesh.
 TEST_F(TileScan, MatchesScanOfJoinedMesh) {
   ASSERT_EQ(run_skycap(scan("part", {"--format", "xyz"})).exit_code, 0);
   write_mission("joined.ply", ", position: [45, 10, 1]");
@@ -92,7 +93,7 @@ TEST_F(TileScan, MatchesScanOfJoinedMesh) {
                             one = read_numbers("whole/scan.xyz");
   EXPECT_GT(one.size(), 8U * 500);
   ASSERT_EQ(tiles.size(), one.size());
-  // Rounding moves a ray by some 1e-5 m, and a grazing hit by some more.
+  // Rounding moves a ray by about 1e-5 m, and a grazing hit by more.
   std::size_t different = 0;
   for (std::size_t i = 0; i < one.size(); ++i) {
     different += std::abs(tiles[i] - one[i]) > 2e-3 ? 1 : 0;
@@ -100,7 +101,7 @@ TEST_F(TileScan, MatchesScanOfJoinedMesh) {
   EXPECT_LE(different, one.size() / 1000);
 }
 
-// Property: of what is in reach, rays meet the same bits, whichever other tiles there are.
+// Property: within the range, rays hit bitwise identical points, independent of other tiles.
 TEST_F(TileScan, HitsSamePointsForAnyLoadedDistantTiles) {
   const scene::TiledScene tiles(mission().scene(), folder_.path(), 0);
   EXPECT_EQ(tiles.triangles(), joined_.triangles.size());

@@ -34,7 +34,7 @@ config::MissionSetup mission_with(const std::string& key = "", const std::string
   return config::parse_mission(flight_mission(), "m.yaml", overrides);
 }
 
-/// How far a place is from a way.
+/// Returns the distance of a position from a path.
 double cross_track_error(const Vector3d& position, const std::vector<Vector3d>& path) {
   double min = std::numeric_limits<double>::infinity();
   for (std::size_t i = 1; i < path.size(); ++i) {
@@ -61,7 +61,7 @@ TEST(EnRouteFrames, FollowPathNoFasterThanVehicle) {
     for (std::size_t i = 0; i < frames.size(); ++i) {
       const Vector3d& position = frames[i].view.position;
       EXPECT_LT(cross_track_error(position, path.points), 1e-9);
-      const double now = position.x() + position.y();  // along the corner
+      const double now = position.x() + position.y();  // progress around the corner
       EXPECT_GT(now, travelled);
       EXPECT_LE(now - travelled, mission.flight().cruise_speed * period + 1e-9);
       travelled = now;
@@ -103,7 +103,7 @@ TEST(EnRouteFrames, LookAtSceneWhenBothViewsDo) {
   }
 }
 
-// Between frames a tenth of a second apart the place changes as the velocities say.
+// Between frames 0.1 s apart, the position changes according to the velocities.
 TEST(EnRouteFrames, MoveAccordingToTheirVelocities) {
   const session::LegMotion motion(mission_with().flight());
   const auto frames = motion.frames({{{0, 0, 10}, {30, 0, 20}}, 2.0}, west, west, 0.1);
@@ -121,7 +121,8 @@ TEST(EnRouteFrames, AreEmptyOnPathShorterThanPeriod) {
   EXPECT_TRUE(motion.frames({{{0, 0, 10}, {0, 0, 10}}, 2.0}, west, west, 1.0).empty());
 }
 
-// Distance over speed, a ramp at both ends, a stop in the corner; then rests, the pad's climb.
+// Distance over speed, a ramp at both ends and a stop at the corner, then rests and the climb from
+// the pad.
 TEST(EnRouteFrames, HaveTimesOfVehicleMotion) {
   const config::MissionSetup mission = mission_with();
   const session::LegMotion motion(mission.flight());
@@ -139,7 +140,7 @@ TEST(EnRouteFrames, HaveTimesOfVehicleMotion) {
 
 TEST(MovingSurvey, ReachesSameCoverageInLessTime) {
   const config::MissionSetup stops = config::parse_mission(flight_mission(), "m.yaml");
-  // At a stop less is left to gain: the way has shown much of it.
+  // The en-route frames have observed much of the surface, so that a stop gains less.
   const config::MissionSetup moving = mission_with("planner.min_gain", "0.01");
   const evaluation::SurveyScene scene(moving.simulation, "", 0);
   double standing_time = 0.0, moving_time = 0.0, standing_coverage = 0.0, moving_coverage = 0.0;

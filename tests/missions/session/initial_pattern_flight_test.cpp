@@ -28,7 +28,7 @@ config::MissionSetup make_mission(const std::string& box, const std::string& mor
       "m.yaml");
 }
 
-/// With the first seed.
+/// Returns the initial pattern for the first seed.
 std::vector<View> planned_initial_views(const config::MissionSetup& mission) {
   return initial_pattern_views(mission.survey().start, 1);
 }
@@ -37,7 +37,7 @@ constexpr const char* house = "{min: [-10, -20, 0], max: [10, 20, 20]}";
 constexpr const char* tower = "{min: [-10, -20, 0], max: [10, 20, 40]}";
 constexpr const char* block = "{min: [-100, -60, 0], max: [100, 60, 30]}";
 
-/// The least distance of the way through the views from the box, sampled.
+/// Returns the minimum distance between the path through the views and the box, by sampling.
 double nearest(const std::vector<View>& views, const AlignedBox3d& box) {
   double min = 1e9;
   for (std::size_t i = 1; i < views.size(); ++i) {
@@ -51,7 +51,7 @@ double nearest(const std::vector<View>& views, const AlignedBox3d& box) {
   return min;
 }
 
-/// The angle by which the way turns about the z axis.
+/// Returns the total angle of the path around the z axis.
 double turned(const std::vector<View>& views) {
   double turned = 0.0;
   for (std::size_t i = 1; i < views.size(); ++i) {
@@ -70,13 +70,13 @@ TEST(InitialPatternFlight, OrbitsOnceOutsideBox) {
     EXPECT_GT(nearest(views, mission.flight().unknown_box), mission.flight().clearance + 0.5);
     EXPECT_NEAR(turned(views), 2.0 * M_PI, 1e-9);
     for (const View& view : views) {
-      EXPECT_LT(view.direction.dot(view.position), 0.0);  // looks at the middle
+      EXPECT_LT(view.direction.dot(view.position), 0.0);  // looks at the centre
     }
   }
 }
 
 TEST(InitialPatternFlight, OrbitsTallBoxSeveralTimes) {
-  const config::MissionSetup mission = make_mission(tower);  // 40 m high, looked at from 20 m
+  const config::MissionSetup mission = make_mission(tower);  // 40 m high, observed from 20 m
   const std::vector<View> views = planned_initial_views(mission);
   EXPECT_NEAR(turned(views), 4.0 * M_PI, 1e-9);
   EXPECT_GT(nearest(views, mission.flight().unknown_box), mission.flight().clearance + 0.5);
@@ -87,7 +87,7 @@ TEST(InitialPatternFlight, OrbitsTallBoxSeveralTimes) {
   }
   EXPECT_LT(views.front().position.z(), 0.3 * 40.0);
   EXPECT_GT(views.back().position.z(), 0.85 * 40.0);
-  // From farther away more is seen at once; without a bound nothing else would be planned.
+  // From farther away, one view sees more. Without a limit, the pattern would be the only plan.
   EXPECT_EQ(planned_initial_views(make_mission("{min: [-30, -30, 0], max: [30, 30, 33]}")).size(),
             5U);
   EXPECT_LE(planned_initial_views(make_mission("{min: [-1, -1, 0], max: [1, 1, 9000]}")).size(),
@@ -102,7 +102,7 @@ TEST(InitialPatternFlight, FliesStripsOverFlatBoxWithLimitedSpacing) {
   EXPECT_GT(nearest(views, mission.flight().unknown_box), mission.flight().clearance + 0.5);
   EXPECT_LE(120.0 / (0.5 * static_cast<double>(views.size())), views[0].position.z());
   for (std::size_t i = 0; i < views.size(); i += 2) {
-    EXPECT_NEAR((views[i + 1].position - views[i].position).norm(), 200.0, 1e-9);  // along
+    EXPECT_NEAR((views[i + 1].position - views[i].position).norm(), 200.0, 1e-9);  // along the row
   }
 }
 
@@ -111,18 +111,20 @@ TEST(InitialPatternFlight, IsOmittedWhenDisabled) {
   EXPECT_EQ(planned_initial_views(make_mission(tower, ", initial_pattern: strips")).size() % 2, 0U);
 }
 
-// The speed that a scanner's density allows grows with its turns; half the vehicle's is the most.
+// The speed allowed by a scanner's density increases with its rotation rate, up to half the maximum
+// speed of the vehicle.
 TEST(InitialPatternFlight, FliesSlowerForHigherDensity) {
   const config::MissionSetup mission = make_mission(tower);
   const double coarse = mission.flight().cruise_speed;
-  EXPECT_DOUBLE_EQ(coarse, 7.5);  // the m350_rtk flies 15 m/s
+  EXPECT_DOUBLE_EQ(coarse, 7.5);  // half of the m350_rtk's 15 m/s
   const auto speed_at = [&](double spacing) {
     return sim::scanning_speed(mission.sensor(), mission.survey().planner.view_distance, spacing,
                                mission.flight().required_vehicle().max_speed);
   };
   const double fine = speed_at(0.025);
   EXPECT_LT(fine, coarse);
-  EXPECT_NEAR(speed_at(0.025 * std::sqrt(0.5)), 0.5 * fine, 1e-9);  // as many rays on half the area
+  // The same number of rays on half the area.
+  EXPECT_NEAR(speed_at(0.025 * std::sqrt(0.5)), 0.5 * fine, 1e-9);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Where a vehicle takes off and lands, and how high it returns: a mission round a plain building.
+// Pads and return altitudes for a mission around a plain building.
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -29,7 +29,7 @@ using tests::TestFolder;
 constexpr double building_height = 15.0;
 const Vector3d pad(-75, 0, 0);
 
-/// A closed box as an OBJ file's text; its top rises to the east by `slope` a metre.
+/// Returns a closed box as OBJ text. The slope of its top [m/m] rises to the east.
 std::string box_obj(const Vector3d& low, const Vector3d& high, double slope, int first) {
   std::string text;
   for (int corner = 0; corner < 8; ++corner) {
@@ -51,8 +51,8 @@ std::string box_obj(const Vector3d& low, const Vector3d& high, double slope, int
 
 std::string building() { return box_obj({-10, -10, 0}, {10, 10, building_height}, 0.0, 1); }
 
-/// The building, and a slab of 2 m on which the pad is, so steep; another on the other side keeps
-/// the middle of it all where it is. Its lowest place is a metre below the pad.
+/// Returns the building and a slab of 2 m below the pad, with this slope. A second slab on the
+/// other side keeps the centre of the scene. The lowest point is 1 m below the pad.
 std::string building_with_slab(double slope_deg) {
   const double slope = std::tan(slope_deg * radians_per_degree);
   return building() + box_obj({-76, -1, -1}, {-74, 1, 0}, slope, 9) +
@@ -64,7 +64,7 @@ std::string mission_round(const std::string& model) {
                                       "14, 14, 18");
 }
 
-/// The package of one survey, which the tests only read.
+/// Returns the package of one survey. The tests only read it.
 const TestFolder& package() {
   static const TestFolder folder;
   static const bool is_made = [] {
@@ -80,7 +80,8 @@ const TestFolder& package() {
   return folder;
 }
 
-/// A route from the pad over `positions` and back the same way, stopping everywhere, as PX4's file.
+/// Returns a PX4 route from the pad through `positions` and back on the same path, with a stop at
+/// each position.
 std::string route_there_and_back(const std::vector<Vector3d>& positions) {
   const flight::LocalFrame frame({47.1, 8.2, 480.0});
   std::string text = "QGC WPL 110\n";
@@ -97,7 +98,7 @@ std::string route_there_and_back(const std::vector<Vector3d>& positions) {
   constexpr int waypoint = 16, land = 21, take_off = 22;
   const Vector3d above_pad = pad + Vector3d(0, 0, 5);
   add(take_off, 0.0, above_pad);
-  text += "1\t0\t2\t178\t1\t4\t-1\t0\t0\t0\t5\t1\n";  // 4 m/s
+  text += "1\t0\t2\t178\t1\t4\t-1\t0\t0\t0\t5\t1\n";  // speed of 4 m/s
   ++items;
   for (const Vector3d& position : positions) add(waypoint, 0.5, position);
   for (auto position = positions.rbegin() + 1; position != positions.rend(); ++position) {
@@ -116,8 +117,7 @@ tests::ProgramRun check(const std::vector<std::string>& more,
   return run_skycap(arguments);
 }
 
-// The route goes round the building to behind it: whoever returns from there at 5 m flies through
-// it.
+// The route leads around the building. A direct return at 5 m from behind it would cross it.
 TEST(StatedReturns, AreRejectedAtAltitudeThroughBuilding) {
   package().write("behind.waypoints",
                   route_there_and_back({{-22, -22, 6}, {22, -22, 6}, {22, 0, 6}}));
@@ -126,13 +126,13 @@ TEST(StatedReturns, AreRejectedAtAltitudeThroughBuilding) {
   };
   const auto low = check_return("5");
   EXPECT_EQ(low.exit_code, 1);
-  EXPECT_THAT(low.out, HasSubstr(": verified, 0 of "));  // the mission itself is
+  EXPECT_THAT(low.out, HasSubstr(": verified, 0 of "));  // the mission itself is verified
   EXPECT_THAT(low.out, HasSubstr("not verified: at 5 m (--return-altitude) "));
   EXPECT_THAT(low.out, HasSubstr(" of the scene"));
   const std::string min = "the lowest verified return altitude is ";
   ASSERT_THAT(low.out, HasSubstr(min));
   const double height = std::stod(low.out.substr(low.out.find(min) + min.size()));
-  EXPECT_GE(height, building_height + 2.0 - 0.1);  // the clearance, less what proofs lose
+  EXPECT_GE(height, building_height + 2.0 - 0.1);  // the clearance minus the verification slack
   EXPECT_EQ(check_return(std::to_string(height)).exit_code, 0);
 }
 
@@ -169,7 +169,7 @@ TEST(Pads, AreRejectedWhenTerrainIsTooSteep) {
                                  "prior: [{file: slope.obj, role: terrain, uncertainty: 0.1}]\n");
   const auto run = run_skycap({"check", mission});
   EXPECT_EQ(run.exit_code, 1) << run.err;
-  // A rise of 2.5 m on 10 m.
+  // A rise of 2.5 m over 10 m.
   EXPECT_THAT(run.out, HasSubstr("has a slope of 14.0 degrees by the terrain")) << run.out;
 }
 
@@ -187,7 +187,7 @@ TEST(Pads, AreCheckedAgainstSceneInRouteFiles) {
   EXPECT_EQ(with("gentle.obj").exit_code, 0);
 }
 
-/// What the mission's camera measures of a ramp through the pad that rises to the east.
+/// Returns the camera's scan of a ramp through the pad that rises to the east.
 geometry::Scan make_ramp_scan(const geometry::Camera& camera, const geometry::View& view,
                               double slope) {
   geometry::Scan scan;

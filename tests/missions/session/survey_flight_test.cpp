@@ -31,7 +31,7 @@ using tests::read_content;
 using tests::run_skycap;
 using tests::TestFolder;
 
-/// What the flight must keep away from, seen or not.
+/// Returns all obstacles, observed or not.
 flight::KnownSpace make_truth(const flight::FlightOptions& options,
                               const evaluation::SurveyScene& scene) {
   flight::Obstacles obstacles = options.rules();
@@ -39,7 +39,7 @@ flight::KnownSpace make_truth(const flight::FlightOptions& options,
   return flight::KnownSpace(obstacles);
 }
 
-// The planner's and the flight's world is what was measured. This is the other one.
+// The planner and the flight only know measured space. The check uses the ground truth.
 TEST(SurveyFlight, KeepsClearanceFromGroundTruth) {
   const config::MissionSetup mission = config::parse_mission(flight_mission(), "m.yaml");
   const evaluation::SurveyScene scene(mission.simulation, "", 0);
@@ -73,7 +73,7 @@ TEST(SurveyFlight, IsSameForAnyThreadCount) {
   EXPECT_EQ(one.flight_record->measured->free_volume(), two.flight_record->measured->free_volume());
 }
 
-// The shipped missions that fly, from any random start.
+// Shipped missions with a vehicle, from any random start.
 TEST(SurveyFlight, ReachesFirstViewOfShippedMissions) {
   const std::filesystem::path folder = std::filesystem::path(SKYCAP_SOURCE_DIR) / "missions";
   for (const char* name : {"radcliffe_camera.yaml", "city_block.yaml"}) {
@@ -111,7 +111,7 @@ TEST(SurveyFlight, StopsPathSearchOnRequest) {
   EXPECT_THROW(flight.can_reach(first.position, next), survey::Interrupted);
 }
 
-/// The package of one survey, which all tests below only read.
+/// Returns the package of one survey. All tests below only read it.
 const TestFolder& package() {
   static const TestFolder folder;
   static const bool is_made = [] {
@@ -119,7 +119,8 @@ const TestFolder& package() {
     const auto run = run_skycap({"plan", mission, "--out", folder / "out"});
     EXPECT_EQ(run.exit_code, 0) << run.err;
     EXPECT_THAT(run.out, HasSubstr("verified for every leg; required 2.00 m"));
-    EXPECT_FALSE(std::filesystem::exists(folder / "out/mission.kmz"));  // not for this vehicle
+    // Not a format of this vehicle.
+    EXPECT_FALSE(std::filesystem::exists(folder / "out/mission.kmz"));
     const auto dji = run_skycap({"export", folder / "out", "--format", "kmz"});
     EXPECT_EQ(dji.exit_code, 0) << dji.err;
     return true;
@@ -153,8 +154,8 @@ TEST(FlightPackage, VerifiesEveryRouteFormatAgainstGroundTruth) {
   }
 }
 
-// Returns as PX4 flies them, from anywhere on the route, against the teapot as it is: a point every
-// 10 cm, asked for its distance alone.
+// PX4 returns from random positions on the route, checked against the teapot's ground truth. Each
+// return is sampled every 10 cm.
 TEST(FlightPackage, KeepsReturnsClearOfGroundTruth) {
   const TestFolder& folder = package();
   const package::PackagedSurvey survey = package::read_package(folder / "out", {});
@@ -176,7 +177,7 @@ TEST(FlightPackage, KeepsReturnsClearOfGroundTruth) {
   for (int i = 0; i < 1000; ++i) {
     const std::size_t leg = 1 + random() % (points.size() - 1);
     const Vector3d from = flight::Segment{points[leg - 1], points[leg]}.at(share(random));
-    // PX4 begins to fly level from up to 0.8 m below the height of return on.
+    // PX4 starts level flight up to 0.8 m below the return altitude.
     const double top = std::max(from.z(), level - 0.8 * share(random));
     const Vector3d above(from.x(), from.y(), top), home(survey.pad.x(), survey.pad.y(), top);
     for (const flight::Segment& segment : {flight::Segment{from, above}, {above, home}}) {
@@ -201,7 +202,7 @@ TEST(FlightPackage, VerifiesReturnsAtStatedAltitude) {
   EXPECT_THAT(check(folder / "out/mission.kmz", {}).out, HasSubstr("(globalRTHHeight)"));
   EXPECT_THAT(check(folder / "out/mission.csv", {}).out, HasSubstr("returns not checked"));
 
-  // Alone, the file says nothing of returns; beside other parameters those count.
+  // The file itself contains no return settings. With other parameters, those are used.
   const TestFolder alone;
   const std::string plan = alone.write("mission.plan", read_content(folder / "out/mission.plan"));
   const auto unsaid = check(plan, {});
@@ -216,7 +217,7 @@ TEST(FlightPackage, VerifiesReturnsAtStatedAltitude) {
 
 TEST(FlightPackage, ReportsCollidingLegsInMovedScene) {
   const TestFolder& folder = package();
-  // The same route with the teapot moved to the lowest of its stations.
+  // The same route, with the teapot moved to its lowest capture point.
   const std::vector<geometry::View> views = package::read_package(folder / "out", {}).views;
   const Vector3d at = std::ranges::min(views, {}, [](const geometry::View& view) {
                         return view.position.z();
@@ -230,7 +231,8 @@ TEST(FlightPackage, ReportsCollidingLegsInMovedScene) {
   EXPECT_THAT(run.out, HasSubstr(": not verified, "));
 }
 
-// In its package a file is held to the package's pad; items are named as the ground station does.
+// Within its package, a file is checked against the package's pad. Items are numbered as in the
+// ground station.
 TEST(FlightPackage, NamesItemsOfCorruptedFiles) {
   const TestFolder& folder = package();
   json plan = json::parse(read_content(folder / "out/mission.plan"));
@@ -268,7 +270,7 @@ TEST(FlightPackage, ExportsForAnotherVehicle) {
   }
 }
 
-/// What is printed for the pilot when the package is exported for a vehicle.
+/// Returns the steps that the export prints for the pilot of this vehicle.
 std::string steps_for(const std::string& vehicle, const std::string& format) {
   const TestFolder& folder = package();
   const TestFolder out;
@@ -318,8 +320,8 @@ TEST(FlightPackage, ReadsBackAsPlanned) {
   EXPECT_EQ(route.length, summary.at("route_length_m").get<double>());
 }
 
-// In the order of the survey nothing is flown that the survey did not fly, but for the way home,
-// and in place of ways that nobody could be called home from.
+// In survey order, the route contains only legs that the survey flew. Exceptions are the return and
+// replacements of legs without verified returns.
 TEST(FlightPackage, KeepsSurveyPathsInSurveyOrder) {
   const TestFolder& folder = package();
   const package::PackagedSurvey survey =
@@ -361,7 +363,7 @@ TEST(FlightPackage, WritesFilePerSortieForSmallBattery) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_TRUE(std::filesystem::exists(folder / "sorties/mission-1.plan"));
   EXPECT_TRUE(std::filesystem::exists(folder / "sorties/mission-2.plan"));
-  // Exported again with full batteries, the files of the other split do not stay.
+  // After another export with full batteries, the files of the previous split are removed.
   EXPECT_EQ(run_skycap({"export", folder / "out", "--format", "plan", "--out", folder / "sorties"})
                 .exit_code,
             0);
@@ -381,10 +383,10 @@ TEST(FlightPackage, ReportsMissingDataOfFormats) {
 
   const auto alone = run_skycap({"export", folder / "out", "--format", "plan", "--set",
                                  "site.latitude_deg=1", "--set", "site.longitude_deg=2"});
-  EXPECT_EQ(alone.exit_code, 0) << alone.err;  // above sea level by EGM96
+  EXPECT_EQ(alone.exit_code, 0) << alone.err;  // AMSL, from EGM96
 }
 
-// The pilot vouched for the air above the pad, but the tip of the spout is there.
+// The space above the pad is assumed free, but the tip of the spout is there.
 TEST(FlightPackage, KeepsSurveyWithoutRoute) {
   const TestFolder folder;
   const std::string mission = folder.write("m.yaml", flight_mission());
@@ -411,7 +413,7 @@ TEST(FlightPackage, KeepsSurveyWithoutRoute) {
   EXPECT_FALSE(std::filesystem::exists(folder / "out/mission.plan"));
   const json summary = json::parse(read_content(folder / "out/summary.json"));
   EXPECT_THAT(summary.at("flight").at("failure").get<std::string>(), HasSubstr("a measured point"));
-  // From another pad there is one.
+  // From another pad there is a route.
   EXPECT_EQ(run_skycap({"export", folder / "out", "--format", "plan", "--set",
                         "flight.takeoff=[-30, 0, 0]"})
                 .exit_code,

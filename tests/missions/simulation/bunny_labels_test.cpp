@@ -1,5 +1,5 @@
-/// The labels of a real survey against the definition, computed anew after every view with
-/// nanoflann's neighbour search, which shares no code with ours.
+/// Labels of a survey compared with their definition after each view. The reference uses
+/// nanoflann's neighbour search, which shares no code with Skycap.
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -35,7 +35,7 @@ struct Points {
   }
 };
 
-/// The definition of the labels, without the memory of what was given up.
+/// Returns labels by definition, without the memory of discarded frontiers.
 std::vector<PointLabel> recomputed_labels(const std::vector<Eigen::Vector3f>& positions,
                                           double radius, std::size_t core_threshold) {
   using Tree =
@@ -43,7 +43,7 @@ std::vector<PointLabel> recomputed_labels(const std::vector<Eigen::Vector3f>& po
   const Points points{positions};
   Tree tree(3, points, nanoflann::KDTreeSingleIndexAdaptorParams(10));
   tree.buildIndex();
-  // nanoflann's balls are open; the next larger number makes them closed.
+  // nanoflann's balls are open. The next larger number makes them closed.
   const float squared_radius =
       std::nextafter(static_cast<float>(radius * radius), static_cast<float>(1.0));
   std::vector<std::vector<std::pair<std::uint32_t, float>>> near(positions.size());
@@ -62,7 +62,7 @@ std::vector<PointLabel> recomputed_labels(const std::vector<Eigen::Vector3f>& po
   return labels;
 }
 
-// A sixteenth of the D435's pixels and of the density, so that the recomputation takes a second.
+// A sixteenth of the D435's pixels and of the density, so that the recomputation takes 1 s.
 TEST(BunnySurvey, MatchesFullRecomputationOfLabelsAfterEveryView) {
   const config::MissionSetup mission = config::read_mission(
       SKYCAP_SOURCE_DIR "/missions/bunny.yaml", {{"--set", "sensor.width", "212"},

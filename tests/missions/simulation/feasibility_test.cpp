@@ -44,7 +44,7 @@ TEST(Feasibility, FindsNoProblemsInFeasibleMissions) {
 
 struct Flaw {
   Settings settings;
-  std::string sentence;  ///< a part of it
+  std::string sentence;  ///< part of the expected sentence
 };
 
 const std::string box_min = "planner.scene_box.min", box_max = "planner.scene_box.max";
@@ -103,8 +103,8 @@ TEST(Feasibility, IsCheckedBeforeSurvey) {
   }
 }
 
-// The survey takes at least half the fewest views that were expected and at most twice the most; a
-// limit is not expected to be broken.
+// The survey needs at least half the predicted minimum and at most twice the predicted maximum of
+// views. No exceeded limit is predicted.
 TEST(Expectation, PredictsViewsWithinFactorOfTwo) {
   const config::MissionSetup mission =
       config::parse_mission(quick_mission(), "m.yaml", {{"--planner", "planner.name", "skycap"}});
@@ -120,7 +120,8 @@ TEST(Expectation, PredictsViewsWithinFactorOfTwo) {
   EXPECT_GT(expected.max_time, 0.0);
   EXPECT_GT(expected.memory, 1e7);
 
-  // So many views of the attainable coverage take longer than the survey, on any machine.
+  // With so many views for the attainable coverage, its computation takes longer than the survey on
+  // any machine.
   const config::MissionSetup long_one = config::parse_mission(
       quick_mission(), "m.yaml",
       overrides({{"planner.name", "skycap"}, {"evaluation.attainable_views", "10000"}}));

@@ -26,7 +26,7 @@ config::MissionSetup mission_with(const Keys& keys) {
   return config::parse_mission(tests::flight_mission(), "m.yaml", overrides);
 }
 
-/// What all missions here have: no noise.
+/// Returns a mission without noise.
 config::MissionSetup exact_mission(Keys keys = {}) {
   keys.emplace_back("sensor.noise.sigma", "0");
   return mission_with(keys);
@@ -35,15 +35,15 @@ config::MissionSetup exact_mission(Keys keys = {}) {
 const sim::Scene wall(sim::square({12, 0, 0}, -Vector3d::UnitX(), 400.0), 1);
 const geometry::View at_wall{Vector3d::Zero(), Vector3d::UnitX()};
 
-/// The sensor that is not carried.
+/// Returns the points of a sensor that does not move.
 std::vector<Eigen::Vector3f> points_at_rest(const config::MissionSetup& mission,
                                             const geometry::View& view, std::uint64_t seed,
                                             std::uint64_t frame) {
   return sim::SurveySensor(mission.simulation.sensor, seed).scan(wall, view, frame, 1).points;
 }
 
-// A pixel in a corner moves by 252 px for each radian, and movements count at 16 m: in a readout of
-// 0.02 s by half a pixel at 1.35 m/s beside the sway of a stop.
+// A pixel in a corner moves by 252 px per radian, and motion is evaluated at 16 m. At 1.35 m/s the
+// image moves by half a pixel during a readout of 0.02 s, in addition to the hover drift.
 TEST(MountedSensor, IsAtRestBelowHalfAPixelOfMotion) {
   const config::MissionSetup mission =
       mission_with({{"sensor.exposure", "0.001"}, {"sensor.readout", "0.02"}});
@@ -58,16 +58,17 @@ TEST(MountedSensor, IsAtRestBelowHalfAPixelOfMotion) {
   EXPECT_NE(scan_at_speed(2.0), standing);
 }
 
-// 160 pixels of 69.4 degrees: f = 116 px. At 16 m, 8 m/s and 0.2 s are 11.5 of them and more.
+// 160 pixels for 69.4 degrees: f = 116 px. At 16 m, 8 m/s for 0.2 s exceed 11.5 pixels.
 TEST(MountedSensor, ComputesRollingShutterSkew) {
   const config::MissionSetup mission =
       exact_mission({{"sensor.exposure", "0.001"}, {"sensor.readout", "0.2"}});
   simulation::MountedSensor mounted(mission.simulation, 3);
   const Scan scan = mounted.scan(wall, {.view = at_wall, .velocity = {8.0, 0.0, 0.0}}, 0, 1);
   ASSERT_GT(scan.points.size(), 1000U);
-  // What is seen above is read first: farther, by 0.8 m before the middle of the frame at most.
+  // The top rows are read first. They are farther away, by at most 0.8 m before the middle of the
+  // frame.
   const auto& [top, bottom] = std::pair(scan.points.front(), scan.points.back());
-  const double sway = 0.1 * 0.1 + 0.1 * 0.0087 * 12.0 * 1.2;  // by half of the readout
+  const double sway = 0.1 * 0.1 + 0.1 * 0.0087 * 12.0 * 1.2;  // during half of the readout
   EXPECT_NEAR(top.x(), 12.8, 0.02 + sway);
   EXPECT_NEAR(bottom.x(), 11.2, 0.02 + sway);
 }
@@ -90,7 +91,7 @@ TEST(MountedSensor, HasCorrelatedNavigationErrors) {
   constexpr int pairs = 200, frames = 2 * pairs;
   simulation::MountedSensor mounted(mission.simulation, 1);
   for (int i = 0; i < frames; ++i) {
-    // Every second one follows the one before it at once.
+    // Each second scan immediately follows the previous one.
     const int pair = i / 2;
     const double time = 500.0 * pair + (i % 2 == 0 ? 0.0 : 0.5);
     const Scan scan = mounted.scan(wall, {.view = at_wall, .time = time}, i, 1);
@@ -102,7 +103,7 @@ TEST(MountedSensor, HasCorrelatedNavigationErrors) {
     if (i % 2 == 1) change += (error - before) * (error - before) / pairs;
     before = error;
   }
-  // 200 independent ones: four deviations of their variance are 40 %.
+  // With 200 independent samples, four standard deviations of their variance are 40%.
   EXPECT_NEAR(square, 0.09, 0.4 * 0.09);
   EXPECT_NEAR(change, 2.0 * 0.09 * (1.0 - std::exp(-0.5 / 50.0)), 0.5 * 0.0018);
 }
@@ -118,7 +119,7 @@ TEST(MountedSensor, IgnoresNavigationErrorsWithoutVehicle) {
   EXPECT_EQ(mounted.scan(wall, {.view = near}, 0, 1).points, points_at_rest(mission, near, 1, 0));
 }
 
-// A survey whose poses are off by as much as points may be covers less than it would, and knows it.
+// With pose errors of the permitted point error, the survey covers less, and its estimate is lower.
 TEST(MountedSensor, LowersEstimatedCoverageWithPoseErrors) {
   const Keys few{{"limits.max_views", "5"}, {"planner.target_coverage", "1"}};
   const config::MissionSetup exact = mission_with(few);

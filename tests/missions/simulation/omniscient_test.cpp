@@ -23,7 +23,7 @@ TEST(OracleSurvey, NeedsFewerViewsThanPlannerForSameCoverage) {
       quick_mission("seed: 3\n"), "m.yaml", {{"--planner", "planner.name", "skycap"}});
   const evaluation::SurveyScene scene(mission.simulation, "", 0);
   const session::SurveyRecord planned = simulation::run_survey(mission.simulation, scene, 3, 1);
-  // The last places are found by luck among so few candidates.
+  // With so few candidates, the last targets are found only by chance.
   simulation::OmniscientConfig config = quick;
   config.candidates = 600;
   config.target_coverage = 0.95 * planned.coverage();
@@ -33,8 +33,8 @@ TEST(OracleSurvey, NeedsFewerViewsThanPlannerForSameCoverage) {
     return view.coverage >= *config.target_coverage;
   });
   EXPECT_LE(known.views.size(), reached - planned.views.begin() + 1);
-  // The tour takes the views in another order, so that other points are left out as too near; and
-  // the last view may show more than was wanted.
+  // The tour has another order of views, so other points are discarded as too close. The last view
+  // may also exceed the target.
   EXPECT_GE(known.coverage(), *config.target_coverage - 0.03);
 }
 

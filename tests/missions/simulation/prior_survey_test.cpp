@@ -1,4 +1,4 @@
-// Surveys with prior data: what is in the way, what is guessed, and what a package says of it.
+// Surveys with prior data: obstacles, predicted surfaces, and their records in packages.
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -31,13 +31,14 @@ using tests::flight_mission;
 using tests::read_content;
 using tests::TestFolder;
 
-/// The arguments have spaces between them.
+/// Splits the line at spaces and runs the program.
 tests::ProgramRun run_skycap(const std::string& line) {
   std::istringstream words(line);
   return tests::run_skycap(std::vector<std::string>(std::istream_iterator<std::string>(words), {}));
 }
 
-/// A mast between flight_mission()'s pad and its scene: where the first leg is else.
+/// A mast between the pad of flight_mission() and its scene, where the first leg would otherwise
+/// be.
 const AlignedBox3d mast{Vector3d(-66, -3, 0), Vector3d(-64, 3, 25)};
 constexpr double uncertainty = 0.7;
 
@@ -48,7 +49,8 @@ std::string with_obstacle(const std::filesystem::path& folder) {
                         "', role: obstacle, uncertainty: 0.7}]\n");
 }
 
-/// Least distance of points a centimetre apart on the way to a box: at most the true one and that.
+/// Returns the minimum distance of points every 1 cm on a path from a box. It exceeds the true
+/// distance by at most 1 cm.
 double nearest(const std::vector<Vector3d>& flown_path, const AlignedBox3d& box) {
   double min = 1e9;
   for (std::size_t i = 1; i < flown_path.size(); ++i) {
@@ -84,7 +86,7 @@ TEST(PriorSurvey, KeepsLegsClearOfUnmeasuredObstacles) {
   EXPECT_TRUE(was_obstructed) << "else the test says nothing";
 }
 
-// From the mission file to the exported route, and back through `check --route`.
+// From the mission file to the exported route and its check by `check --route`.
 TEST(PriorSurvey, PlansExportsAndChecksWithObstacles) {
   const TestFolder folder;
   std::ofstream(folder.path() / "m.yaml") << with_obstacle(folder.path());
@@ -100,7 +102,7 @@ TEST(PriorSurvey, PlansExportsAndChecksWithObstacles) {
   EXPECT_THAT(run_skycap("check " + path + "/m.yaml").out, HasSubstr("mast.obj: obstacle"));
   EXPECT_EQ(run_skycap("export " + path + "/with --format plan --out " + path + "/again").exit_code,
             0);
-  // The obstacle that a package was planned with belongs to it.
+  // A package requires the obstacle file with which it was planned.
   std::filesystem::remove(folder.path() / "mast.obj");
   const auto gone = run_skycap("export " + path + "/with --format plan --out " + path + "/gone");
   EXPECT_NE(gone.exit_code, 0);
@@ -129,7 +131,7 @@ TEST(PriorSurvey, NamesKeysOfInvalidSources) {
               HasSubstr("key prior[0].role: truth conflicts with scene.model"));
 }
 
-/// A plane that rises eastward by a metre in 20, 100 m each way.
+/// Returns the height of a plane with a slope of 1 in 20 to the east.
 double slope(double x) { return 0.05 * x; }
 geometry::Mesh hillside() {
   return {{{-100, -100, slope(-100)},
@@ -157,7 +159,7 @@ TEST(PriorSurvey, UsesTerrainAsGroundOfViewsPadsAndLegs) {
   EXPECT_TRUE(allows(40, slope(40) + clearance + 0.01));
   EXPECT_FALSE(allows(40, slope(40) + clearance - 0.01));
   EXPECT_TRUE(allows(-40, slope(-40) + clearance + 0.01)) << "lower than the scene's base";
-  // Wherever it is turned to, the view of a target stands high enough over its own place.
+  // For any azimuth, the view of a target is high enough above the terrain at its own position.
   for (double azimuth = 0.0; azimuth < 6.28; azimuth += 0.1) {
     const auto view = limits.make_target_view(
         {0, 0, 3}, Vector3d(std::cos(azimuth), std::sin(azimuth), -0.2).normalized(), 30);
@@ -181,7 +183,7 @@ TEST(PriorSurvey, UsesTerrainAsGroundOfViewsPadsAndLegs) {
   }
 }
 
-/// The mission without its scene and scene box.
+/// Returns the mission without its scene and scene box.
 std::string live_mission(const std::string& prior) {
   std::string text = flight_mission(prior);
   const std::string scene = "scene: {model: 'builtin:teapot', longest_side: 20.0, ground: true}\n";
@@ -207,7 +209,7 @@ TEST(PriorSurvey, DerivesSceneBoxFromTarget) {
   }
 }
 
-// Where the pad is not given, nobody knows what counts from it.
+// Without a pad, heights relative to it are undefined.
 TEST(PriorSurvey, RequiresPadForTakeoffHeights) {
   const TestFolder folder;
   const std::filesystem::path file = folder.path() / "house.geojson";
@@ -231,7 +233,7 @@ TEST(PriorSurvey, RequiresPadForTakeoffHeights) {
   EXPECT_NEAR(mission.scene().priors->priors[0].box.min().z(), -3.75, 1e-3);
 }
 
-// With nothing but a map of the house: a dry run in which the map is the truth, and says so.
+// With only a map of the house, the simulation uses the map as ground truth and reports this.
 TEST(PriorSurvey, UsesTargetsAsGroundTruthInSimulation) {
   const TestFolder folder;
   geometry::write_mesh(folder.path() / "house.obj", flight::scenes::box({-5, -4, 0}, {5, 4, 6}));
@@ -257,7 +259,7 @@ TEST(PriorSurvey, UsesTargetsAsGroundTruthInSimulation) {
   EXPECT_NEAR(target.at("within_m").get<double>(), 0.6 + 0.3, 1e-9);
 }
 
-// Known answer: of a house whose roof alone was measured, the roof is covered.
+// Known case: if only the roof of a house has been measured, the roof is covered.
 TEST(TargetCoverage, ComputesMeasuredFractionOfObject) {
   const TestFolder folder;
   const std::filesystem::path file = folder.path() / "house.obj";
@@ -272,7 +274,7 @@ TEST(TargetCoverage, ComputesMeasuredFractionOfObject) {
   const auto coverage =
       package::target_coverage(mission.scene(), mission.evaluation().registration_distance, roof);
   ASSERT_EQ(coverage.size(), 1U);
-  // The roof, and of the walls what is within 0.7 m of it.
+  // The roof, and the parts of the walls within 0.7 m of it.
   EXPECT_NEAR(coverage[0].object.covered, (100.0 + 40.0 * 0.7) / 500.0, 0.01);
   EXPECT_THAT(package::target_text(coverage), HasSubstr("of 500 m^2"));
 }

@@ -51,7 +51,8 @@ TEST(ScannerField, DetectsScannerKinds) {
   EXPECT_EQ(sim::find_scanner_kind(make_scanner("dji_zenmuse_l1")), ScannerKind::rosette);
 }
 
-// Data sheets: the Mid-70 sees a circle of 70.4 degrees; 100,000 shots a second.
+// Data sheets: the Mid-70 has a circular field of view of 70.4 degrees and 100,000 pulses per
+// second.
 TEST(ScannerField, FitsCameraIntoRoundFieldOfRosette) {
   const auto camera = sim::forward_camera(make_scanner("livox_mid70")).camera;
   const double half_diagonal = std::atan(
@@ -59,10 +60,10 @@ TEST(ScannerField, FitsCameraIntoRoundFieldOfRosette) {
   EXPECT_NEAR(half_diagonal, 35.2 * degree, 0.5 * degree);
   const double pixels = static_cast<double>(camera.width) * camera.height;
   EXPECT_LT(pixels, 1e5 * sim::rosette_period);
-  EXPECT_GT(pixels, 0.5 * 1e5 * sim::rosette_period);  // a square in a circle: 64 %
+  EXPECT_GT(pixels, 0.5 * 1e5 * sim::rosette_period);  // a square inside a circle: 64%
 }
 
-// The longer it draws, the finer it fills its field.
+// The longer the rosette is drawn, the smaller are its gaps.
 TEST(ScannerField, ShrinksRosetteGapsWithTime) {
   const sim::LidarConfig lidar = make_scanner("livox_avia");
   Eigen::Matrix3d optical_from_scanner;
@@ -102,7 +103,7 @@ geometry::Mesh box(const Vector3d& low, const Vector3d& high) {
   return mesh;
 }
 
-/// A room 40 x 40 x 20 m, seen from inside, with a column and poles as thick as an arm.
+/// Returns a room of 40 x 40 x 20 m, observed from inside, with a column and thin poles.
 geometry::Mesh room() {
   geometry::Mesh mesh = box({-20, -20, 0}, {20, 20, 20});
   geometry::append(mesh, box({4, 4, 0}, {6, 6, 20}));
@@ -118,8 +119,8 @@ sim::PlatformMotion on_stretch(const View& from, const View& to, double duration
   return platform_motion;
 }
 
-// The property that everything rests on: no place of any surface counts as free, whatever was flown
-// between the first ray of a scan and the last.
+// Safety property: surface is never classified as free space, for any flight between the first and
+// the last ray of a scan.
 TEST(ScannerField, ContainsNoSurfaceInFreeSpaceOfRosette) {
   const geometry::Mesh mesh = room();
   const sim::Scene scene(mesh);
@@ -141,7 +142,7 @@ TEST(ScannerField, ContainsNoSurfaceInFreeSpaceOfRosette) {
                                on_stretch(from, to, mission.sensor().frame_period), frame++, 1),
                    rays);
     }
-    EXPECT_GT(space.free_volume(), 1000.0) << lidar;  // of 32,000
+    EXPECT_GT(space.free_volume(), 1000.0) << lidar;  // of 32,000 m^3
     for (const Eigen::Vector3f& p : testing_support::not_empty(truth.points)) {
       const Vector3d position = p.cast<double>();
       ASSERT_NE(space.closest({position, position}, 0.01).kind, flight::ObstacleKind::none)
@@ -150,7 +151,7 @@ TEST(ScannerField, ContainsNoSurfaceInFreeSpaceOfRosette) {
   }
 }
 
-// A line's scan in flight is all of the stretch, a line at a time.
+// The scan of a single-line LiDAR in flight covers the whole leg, line by line.
 TEST(ScannerField, CoversWholeLegWithSingleLineLidar) {
   const sim::Scene scene(room());
   const config::MissionSetup mission = make_mission("riegl_vux_1uav");
@@ -170,7 +171,7 @@ TEST(ScannerField, CoversWholeLegWithSingleLineLidar) {
   EXPECT_NEAR(along.back(), -9.0 + lever_arm, 0.03);
   double widest = 0.0;
   for (std::size_t i = 1; i < along.size(); ++i) widest = std::max(widest, along[i] - along[i - 1]);
-  EXPECT_LT(widest, 1.05 * 2.0 / 100.0);  // a hundred lines on two metres
+  EXPECT_LT(widest, 1.05 * 2.0 / 100.0);  // a hundred lines on 2 m
   EXPECT_FALSE(mission.flight().capture.rays.has_value());
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Returns from the ground, and from fifty metres away up to some elevation.
+/// Returns a scan with returns from the ground, and from 50 m away up to this elevation.
 geometry::Scan far_returns(const geometry::View& from, double max_elevation) {
   geometry::Scan scan{.world_from_sensor = geometry::camera_pose(from)};
   constexpr double step = 0.003, min_elevation = -0.8, widest = 1.2, farthest = 50.0;
@@ -27,8 +27,8 @@ geometry::Scan far_returns(const geometry::View& from, double max_elevation) {
   return scan;
 }
 
-// Autopilots climb before they return: a view is no good below air that nobody has seen, though the
-// way there is free.
+// Autopilots climb before they return. A view below unobserved space is rejected, although the path
+// to it is free.
 TEST(ScannerFlight, ReachesOnlyViewsWithFreeReturnClimb) {
   const config::MissionSetup mission = config::parse_mission(
       "scene: {model: builtin:teapot, longest_side: 20}\n"
@@ -46,8 +46,8 @@ TEST(ScannerFlight, ReachesOnlyViewsWithFreeReturnClimb) {
   EXPECT_TRUE(flight.find_path(first.position, inside.position));
   EXPECT_FALSE(flight.may_be_at(inside.position));
   EXPECT_FALSE(flight.can_reach(first.position, inside));
-  // All air above the way, up to the box's near upper edge, which is 76 degrees up from there:
-  // this autopilot may also return without a climb, at any height that it has risen to.
+  // All space above the path up to the near upper edge of the box, 76 degrees up. This autopilot
+  // may also return without a climb, at any altitude that it has reached.
   flight.add_scan(far_returns(first, 1.4));
   EXPECT_TRUE(flight.may_be_at(inside.position));
   EXPECT_TRUE(flight.can_reach(first.position, inside));

@@ -1,4 +1,4 @@
-// Surveys by scanners that do not see a ring at a time: from the opening flight to the end.
+// Surveys with scanners that do not measure full rings, from the initial pattern to the end.
 #include <string>
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 namespace skycap::missions {
 namespace {
 
-/// A teapot of 20 m in a box, on the ground.
+/// Returns a mission with a teapot of 20 m on the ground and a box around it.
 config::MissionSetup mission_by(const std::string& lidar) {
   return config::parse_mission(
       "scene: {model: 'builtin:teapot', longest_side: 20.0, ground: true}\n"
@@ -31,8 +31,7 @@ config::MissionSetup mission_by(const std::string& lidar) {
       "m.yaml");
 }
 
-/// What the planner believes of its coverage, against the share that is covered of what could be
-/// seen.
+/// Compares the planner's estimated coverage with the covered fraction of the visible surface.
 void expect_survey(const std::string& lidar, double min_coverage) {
   const config::MissionSetup mission = mission_by(lidar);
   const evaluation::SurveyScene scene(mission.simulation, "", 0);
@@ -51,7 +50,7 @@ TEST(ScannerSurvey, EndsAndEstimatesCoverageWithSingleLineLidar) {
   expect_survey("riegl_minivux_1uav", 0.85);
 }
 
-// A scanner that looks down at a fixed pitch may have no random view of the scene's middle.
+// For a scanner with a fixed downward pitch, a random view of the scene's centre may not exist.
 TEST(ScannerSurvey, IsPredictedFromStartOfInitialPattern) {
   for (const char* lidar : {"livox_avia", "riegl_minivux_1uav", "ouster_os1_128"}) {
     const config::MissionSetup mission = mission_by(lidar);
@@ -82,7 +81,8 @@ TEST(ScannerSurvey, RunsWithEveryPlanner) {
     const session::SurveyRecord record = simulation::run_survey(
         mission.simulation, evaluation::SurveyScene(mission.simulation, "", 0), 1, 1);
     EXPECT_GT(record.views.size(), 2U) << name;
-    EXPECT_GT(record.coverage(), 0.4) << name;  // twice what one view shows of the teapot
+    // Twice the fraction that one view shows of the teapot.
+    EXPECT_GT(record.coverage(), 0.4) << name;
   }
 }
 

@@ -38,8 +38,8 @@ TEST(SurveyScene, StartsAtConfiguredOrRandomView) {
   const geometry::View a = scene.first_view(1), b = scene.first_view(2);
   EXPECT_EQ(a.position, scene.first_view(1).position);
   EXPECT_GT((a.position - b.position).norm(), 0.1);  // another direction
-  // Both are at d + mean distance from the same centroid, which both look at: the viewing lines
-  // meet there.
+  // Both views are at d + mean distance from the same centroid and look at it. Their viewing lines
+  // intersect there.
   Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
   double mean_distance = 0.0;
   const auto& points = scene.samples().points;
@@ -59,7 +59,7 @@ TEST(SurveyScene, StartsAtConfiguredOrRandomView) {
   EXPECT_LT((view.direction + Eigen::Vector3d::UnitY()).norm(), 1e-12);
 }
 
-// The order of the draws is part of a seed's meaning: the same start from every compiler.
+// Results depend on the seed and the order of draws. The start must be the same with all compilers.
 TEST(SurveyScene, DrawsRandomStartsInDefinedOrder) {
   const config::MissionSetup mission = config::parse_mission(quick_mission(), "m.yaml");
   const evaluation::SurveyScene scene(mission.simulation, "", 0);
@@ -81,7 +81,7 @@ TEST(SurveyScene, KeepsRandomStartsAboveGroundClearance) {
   }
 }
 
-/// All that planner.name knows.
+/// Returns all values of planner.name.
 std::vector<std::string> planner_names() {
   std::vector<std::string> names;
   for (const config::Key& key : config::mission_keys()) {
@@ -90,7 +90,7 @@ std::vector<std::string> planner_names() {
   return names;
 }
 
-// Each planner that a mission can name surveys the quick mission's scene.
+// Each planner that a mission can name surveys the scene of the quick mission.
 TEST(RunSurvey, CoversSceneWithEveryPlanner) {
   EXPECT_EQ(planner_names().size(), 10U);
   for (const std::string& name : planner_names()) {
@@ -104,7 +104,7 @@ TEST(RunSurvey, CoversSceneWithEveryPlanner) {
   }
 }
 
-// The fence leaves a half plane, the prism takes a bite out of it, the gimbal looks down only.
+// The fence leaves a half plane, the prism removes a part of it, and the gimbal only looks down.
 TEST(RunSurvey, KeepsSiteAndLimitsWithEveryPlanner) {
   const std::string site =
       "site:\n"
@@ -127,7 +127,8 @@ TEST(RunSurvey, KeepsSiteAndLimitsWithEveryPlanner) {
     for (const session::EvaluatedView& evaluated : record.views) {
       const geometry::View& view = evaluated.surveyed.view;
       EXPECT_TRUE(limits.allow(view)) << name << " at " << view.position.transpose();
-      // Noise of 0.03 m brings measurements nearer to the sensor than the truth is, or farther.
+      // With 0.03 m noise, measurements are closer to the sensor or farther away than the ground
+      // truth.
       EXPECT_GT(truth.distance(view.position), 0.4 - 0.1) << name;
     }
   }
@@ -164,7 +165,7 @@ TEST(RunSurvey, EndsAtDistanceAndViewLimits) {
 
     const session::SurveyRecord by_time = record_with("limits.max_minutes", "0.4");
     EXPECT_EQ(by_time.stop_reason, survey::StopReason::time_limit) << name;
-    // 5 m/s and 5 s a view, of 24 s.
+    // 5 m/s and 5 s for each view, within 24 s.
     EXPECT_LE(by_time.distance() / 5.0 + 5.0 * static_cast<double>(by_time.views.size()), 24.0);
     EXPECT_GE(by_time.views.size(), 3U) << name;
 
@@ -173,7 +174,8 @@ TEST(RunSurvey, EndsAtDistanceAndViewLimits) {
   }
 }
 
-// An admissible place is one that the mission's limits allow: from above only, tops are visible.
+// Admissible positions are those within the mission's limits. From above, only the upper surfaces
+// are visible.
 TEST(SurveyScene, CountsSurfaceSeenFromAdmissiblePositions) {
   const auto share = [](const std::string& more) {
     const config::MissionSetup mission = config::parse_mission(quick_mission(more), "m.yaml");
@@ -189,7 +191,7 @@ TEST(SurveyScene, CountsSurfaceSeenFromAdmissiblePositions) {
   EXPECT_GT(south, 0.3 * anywhere);
 }
 
-// Coverage along the way is what the final cloud covers, and grows.
+// Coverage grows with the views and ends with that of the final cloud.
 TEST(RunSurvey, EvaluatesEveryView) {
   const config::MissionSetup mission = config::parse_mission(quick_mission(), "m.yaml");
   const evaluation::SurveyScene scene(mission.simulation, "", 0);
@@ -206,10 +208,10 @@ TEST(RunSurvey, EvaluatesEveryView) {
                                   mission.evaluation().registration_distance);
   meter.add(record.cloud.positions);
   EXPECT_EQ(record.coverage(), meter.share());
-  EXPECT_GT(record.coverage(), 0.5);  // it is a survey, not one look
+  EXPECT_GT(record.coverage(), 0.5);  // requires more than one view
 }
 
-// Wherever a stop meets it: the cloud is that of the views that are reported.
+// For a stop at any time, the cloud contains exactly the points of the reported views.
 TEST(RunSurvey, KeepsPointsOfReportedViewsWhenStopped) {
   const config::MissionSetup mission = config::parse_mission(
       quick_mission(), "m.yaml",
@@ -227,7 +229,8 @@ TEST(RunSurvey, KeepsPointsOfReportedViewsWhenStopped) {
             stop.request_stop();
           });
         });
-    if (record.stop_reason == survey::StopReason::interrupted) ++stopped;  // else it was over
+    // Otherwise the survey had already ended.
+    if (record.stop_reason == survey::StopReason::interrupted) ++stopped;
     ASSERT_FALSE(record.views.empty());
     EXPECT_EQ(record.cloud.size(), record.views.back().surveyed.points);
     EXPECT_LT(record.cloud.views.back(), record.views.size());
@@ -260,7 +263,7 @@ TEST(Plan, PlansDifferentSurveyForDifferentSeed) {
             read_content(folder.path() / "2" / "views.csv"));
 }
 
-// A stop that is requested during the first view: that view is finished and kept.
+// A stop is requested during the first view. The view is completed and kept.
 TEST(Plan, WritesIncompletePackageWhenInterrupted) {
   const TestFolder folder;
   const std::string mission = folder.write("m.yaml", quick_mission());
@@ -275,7 +278,7 @@ TEST(Plan, WritesIncompletePackageWhenInterrupted) {
   for (const char* file : {"views.csv", "cloud.ply", "trajectory.tum"}) {
     EXPECT_TRUE(std::filesystem::exists(folder.path() / "out" / file)) << file;
   }
-  // Somebody waits: normals take as long as views.
+  // The user waits for the program to end, and normals take as long as views.
   EXPECT_THAT(read_content(folder.path() / "out" / "cloud.ply"),
               Not(HasSubstr("property float nx")));
 }
@@ -302,7 +305,7 @@ TEST(Plan, ShowsProgressOnlyOnTerminalUnlessQuiet) {
   EXPECT_THAT(run_skycap(verbose).err, HasSubstr("insert"));
 }
 
-// Trials side by side are the surveys that separate runs make.
+// Parallel trials equal separate surveys.
 TEST(Plan, RunsTrialsEqualToSeparateSurveys) {
   const TestFolder folder;
   const std::string mission = folder.write("m.yaml", quick_mission());
@@ -323,7 +326,7 @@ TEST(Plan, RunsTrialsEqualToSeparateSurveys) {
   }
 }
 
-// SEE++ without its two additions is SEE, bit by bit.
+// SEE++ without its two extensions is bitwise equal to SEE.
 TEST(Plan, MatchesSeeWithoutOptimiserAndGraph) {
   const TestFolder folder;
   const std::string mission = folder.write("m.yaml", quick_mission());
@@ -337,7 +340,7 @@ TEST(Plan, MatchesSeeWithoutOptimiserAndGraph) {
             read_content(folder.path() / "without" / "cloud.ply"));
 }
 
-// evaluate, from files, must find the coverage that plan measured on the way.
+// `evaluate` computes the same coverage from files as `plan` during the survey.
 TEST(Evaluate, MatchesCoverageOfPlan) {
   const TestFolder folder;
   const std::string mission = folder.write("m.yaml", quick_mission());
@@ -349,7 +352,8 @@ TEST(Evaluate, MatchesCoverageOfPlan) {
   const json evaluation = json::parse(run.out);
   EXPECT_EQ(evaluation["coverage"], summary["coverage"]);
   EXPECT_EQ(evaluation["points"], summary["points"]);
-  // Isotropic noise of 3 cm moves points off the surface by 3 cm rms or, at edges, a little less.
+  // Isotropic noise of 3 cm moves points off the surface by 3 cm rms, and by slightly less at
+  // edges.
   EXPECT_NEAR(evaluation["distance_to_model_m"]["root_mean_square"], 0.03, 0.008);
 }
 
@@ -373,10 +377,11 @@ TEST(Model, HasDetailLevelsOfSameShape) {
   };
   const auto coarse = printed("radcliffe-camera", "coarse");
   const auto fine = printed("radcliffe-camera", "fine");
-  EXPECT_GT(number_after(fine.out, ": "), 10.0 * number_after(coarse.out, ": "));  // triangles
+  // Number of triangles.
+  EXPECT_GT(number_after(fine.out, ": "), 10.0 * number_after(coarse.out, ": "));
   EXPECT_THAT(coarse.out, HasSubstr(" x 40, area"));
   EXPECT_THAT(fine.out, HasSubstr(" x 40, area"));
-  // Coarse ornaments are plain boxes and curves of few chords.
+  // Coarse ornaments are plain boxes and curves with few segments.
   const double area = number_after(fine.out, "area ");
   EXPECT_NEAR(number_after(coarse.out, "area "), area, 0.25 * area);
 
@@ -395,7 +400,7 @@ TEST(Model, WritesSceneOfMission) {
   const std::string mission = folder.write("m.yaml", quick_mission());
   const auto run = run_skycap({"model", mission, "--out", folder / "scene.ply"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.out, HasSubstr("1 x 0.6"));  // metres; the teapot is 6.434 x 4 x 3.15 units
+  EXPECT_THAT(run.out, HasSubstr("1 x 0.6"));  // metres; the teapot has 6.434 x 4 x 3.15 units
   EXPECT_THAT(run_skycap({"model", folder / "scene.ply"}).out, HasSubstr("1 x 0.6"));
 }
 

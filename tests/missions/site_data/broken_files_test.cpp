@@ -1,5 +1,5 @@
-// Files that are cut short or have bytes changed are read or refused in one line, whatever they
-// hold: every format that is read by code of ours or of others.
+// Truncated files and files with changed bytes are read or rejected in one line, for all formats
+// and parsers.
 
 #include <random>
 
@@ -32,7 +32,8 @@ std::vector<Whole> whole_files() {
 
 class DamagedFiles : public testing::Test {
  protected:
-  /// Whether it was refused; a finding if the message is not one line that names the file.
+  /// Returns true if the file is rejected. The test fails if the message is not one line with the
+  /// file name.
   bool is_rejected(const std::string& name, const std::string& bytes, const std::string& what) {
     Source source = make_source(folder_.file(name, bytes));
     if (name == "cube.geojson") {
@@ -71,7 +72,7 @@ TEST_F(DamagedFiles, AreRejectedInOneLineWhenTruncated) {
       rejected += is_rejected(whole.name, whole.bytes.substr(0, size), what) ? 1 : 0;
     }
   }
-  EXPECT_GE(rejected, 100U);  // text of whole lines, such as an OBJ, may still be a mesh
+  EXPECT_GE(rejected, 100U);  // truncated text files such as OBJ may still be valid meshes
 }
 
 TEST_F(DamagedFiles, AreReadOrRejectedInOneLineWhenBytesChange) {
@@ -89,7 +90,7 @@ TEST_F(DamagedFiles, AreReadOrRejectedInOneLineWhenBytesChange) {
   EXPECT_GE(read, 10U) << "else no change got past the first check of a format";
 }
 
-// A tree takes many times the bytes of its text: 110 MB and 60 MB here.
+// A parsed tree needs many times the memory of its text: 110 MB and 60 MB here.
 TEST_F(DamagedFiles, AreRejectedWhenTreesExceedMemoryLimit) {
   const auto expect_rejected = [&](const std::string& name, const std::string& bytes) {
     const Source source = make_source(folder_.file(name, bytes));
@@ -117,8 +118,8 @@ TEST_F(DamagedFiles, AreRejectedWithKnownFormatsWhenUnknown) {
               testing::HasSubstr(folder_.path().string() + ": "));
 }
 
-// The first crashes assimp 5.2 itself, the second has it take memory without end; it
-// therefore runs in a process of its own.
+// The first file crashes assimp 5.2, and the second makes it allocate memory without limit. It
+// therefore runs in a separate process.
 TEST_F(DamagedFiles, AreRejectedWhenLibraryCrashesOrLoops) {
   const auto error_message = [&](const std::string& name, const std::string& bytes) {
     return thrown_message(

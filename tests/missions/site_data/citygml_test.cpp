@@ -1,4 +1,4 @@
-// What CityGML leaves to its reader: levels of detail, parts, references, openings, three versions.
+// CityGML variants: levels of detail, parts, references, openings, three versions.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::ThrowsMessage;
 
-/// A square of a side at a height, as gml:Polygon, with a hole in it if wanted.
+/// Returns a square with this side and height as gml:Polygon, optionally with a hole.
 std::string square(double side, double z, const std::string& attributes = "", double hole = 0.0) {
   const auto ring = [z](double low, double high) {
     const std::string a = std::to_string(low), b = std::to_string(high),

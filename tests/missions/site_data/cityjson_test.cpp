@@ -1,4 +1,4 @@
-// CityJSON of all versions, as one text and as lines.
+// All CityJSON versions, as one document and as CityJSONSeq lines.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -65,7 +65,7 @@ TEST_F(CityJson, IsParsedOnceDuringReadOnce) {
     EXPECT_NE(read_contents(cloud, {}), points) << "the caller changes its points";
     EXPECT_EQ(read_contents(source, {}), kept);
     Source other = source;
-    other.height_attribute = "h";  // which readers of maps use
+    other.height_attribute = "h";  // used by map readers only
     EXPECT_NE(read_contents(other, {}), kept);
   }
   EXPECT_NE(read_contents(source, {}), kept);
@@ -86,7 +86,7 @@ TEST_F(CityJson, ReadsFeatureLinesWithScaleOfFirstLine) {
   const Prior prior = read(lines);
   EXPECT_EQ(prior.format, "CityJSONSeq 2.0");
   ASSERT_EQ(prior.objects.size(), 2U);
-  EXPECT_EQ(prior.objects[0].id, "a");  // the part is its building's
+  EXPECT_EQ(prior.objects[0].id, "a");  // the part belongs to its building
   EXPECT_DOUBLE_EQ(geometry::surface_area(prior.objects[0].mesh), 4.0);
   EXPECT_TRUE(prior.box.min().isApprox(Eigen::Vector3d(10, 20, 30)));
 }
@@ -126,7 +126,7 @@ TEST_F(CityJson, ReportsErrors) {
   }
 }
 
-/// Property: what instances of a template make of a small file is bounded.
+/// Property: the expansion of template instances in a small file is limited.
 TEST_F(CityJson, RejectsTooManyCorners) {
   std::string ring = "0", instances;
   for (int i = 1; i < 10'000; ++i) ring += ",0";
@@ -144,7 +144,7 @@ TEST_F(CityJson, RejectsTooManyCorners) {
               ThrowsMessage<Error>(HasSubstr("has more than 16 million polygon corners")));
 }
 
-/// By what is counted in the text, before any of it is read.
+/// Estimated from counts in the text before it is parsed.
 TEST_F(CityJson, RejectsTreesAboveMemoryLimit) {
   EXPECT_THAT([&] { parse_cityjson("city.json", std::string(max_tree_bytes / 65 + 1, '[')); },
               ThrowsMessage<Error>(HasSubstr("city.json: requires more than 2 GiB")));

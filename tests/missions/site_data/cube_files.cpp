@@ -110,7 +110,7 @@ std::string make_glb(const Cube& cube) {
   std::string binary;
   for (int i = 0; i < 8; ++i) {
     const Vector3d offset = cube.corner(i) - cube.low;
-    // East is x, up is y, and so north is -z.
+    // East is x and up is y, so north is -z.
     for (const double coordinate : {offset.x(), offset.z(), -offset.y()}) {
       append(binary, static_cast<float>(coordinate));
     }
@@ -194,14 +194,15 @@ std::string make_las(const Cube& cube, int minor, int format, const std::string&
           static_cast<std::int32_t>(std::lround(units[axis])));
     }
     const std::size_t offset = header + record + static_cast<std::size_t>(i) * point;
-    bytes[offset + (format < 6 ? 15 : 16)] = static_cast<char>(i < 4 ? 2 : 6);  // ground, building
+    // Class: ground or building.
+    bytes[offset + (format < 6 ? 15 : 16)] = static_cast<char>(i < 4 ? 2 : 6);
   }
   return bytes;
 }
 
 std::string make_e57(const Cube& cube, const std::string& reference_system) {
   std::vector<E57Scan> scans;
-  for (int first = 0; first < 8; first += 4) {  // bottom and top, each turned a quarter
+  for (int first = 0; first < 8; first += 4) {  // bottom and top, each rotated by 90 degrees
     E57Scan& scan = scans.emplace_back();
     std::array<std::vector<std::int64_t>, 3> units;
     for (int i = first; i < first + 4; ++i) {

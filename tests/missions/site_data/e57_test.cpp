@@ -1,4 +1,4 @@
-// E57 files as prior data: where their own words put them, however large they are.
+// E57 files as prior data: their own georeference, and files of any size.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -49,7 +49,7 @@ TEST_F(E57File, KeepsPositionsOfSkycapScans) {
     const Prior prior = read(make_e57(near, words), without_words);
     EXPECT_TRUE(prior.points[0].isApprox(Eigen::Vector3f(1, 2, 3)));
     EXPECT_TRUE(prior.points[7].isApprox(Eigen::Vector3f(11, 12, 13)));
-    // Who says nothing is told what is made of it.
+    // If a file contains no reference system, a note states the assumption.
     EXPECT_EQ(prior.notes.empty(), *words != '\0');
   }
 }
@@ -68,7 +68,8 @@ TEST_F(E57File, KeepsOnePointPerVoxel) {
   EXPECT_EQ(read(make_e57(cube_), [](Source& s) { s.spacing = 0.1; }).points.size(), 8U);
 }
 
-// It is read piece by piece, whatever its size; what follows the file on disk here is a hole.
+// The file is read in chunks, independent of its size. The part after the valid data is a sparse
+// hole.
 TEST_F(E57File, ReadsFilesLargerThanTwoGigabytes) {
   const std::filesystem::path file = folder_.file("large.e57", make_e57(cube_));
   std::filesystem::resize_file(file, max_bytes + (std::size_t{1} << 20));

@@ -43,7 +43,7 @@ class ForeignCity : public testing::Test {
     return testing_support::thrown_message([&] { read(name, text); });
   }
   testing_support::TemporaryFolder folder_;
-  std::vector<std::string> notes_;  ///< of the last cube
+  std::vector<std::string> notes_;  ///< notes about the last cube
 };
 
 std::string replaced(std::string text, const std::string& old, const std::string& now) {
@@ -86,7 +86,7 @@ TEST_F(ForeignCity, ReadsReferenceSystemNamesOfAuthorities) {
               HasSubstr("'my own'; set crs to its PROJ name"));
 }
 
-/// The cube with the coordinates of each ring written in another way.
+/// Returns the cube as GML with another notation for the coordinates of each ring.
 std::string gml_with(const std::function<std::string(const std::vector<std::string>&)>& ring) {
   std::string text = testing_support::make_citygml(Cube());
   const std::string begin = "<gml:posList>", end = "</gml:posList>";

@@ -1,4 +1,4 @@
-// Polygons, lines and points of Google Earth: what extrude and the altitude modes mean, and KMZ.
+// Google Earth's polygons, lines and points: extrude, altitude modes, and KMZ.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <zlib.h>
@@ -51,8 +51,8 @@ std::string polygon(const std::string& mode, double altitude) {
 const std::string extruded = "<extrude>1</extrude>";
 std::string mode(const std::string& name) { return "<altitudeMode>" + name + "</altitudeMode>"; }
 
-/// The altitude of a roof 20 m above the origin: 520 m above the ellipsoid. KML counts from the
-/// geoid.
+/// Returns the KML altitude of a roof 20 m above the origin, which is 520 m above the ellipsoid.
+/// KML altitudes are relative to the geoid.
 double roof_altitude() { return 520.0 - egm96_undulation(48.0, 9.0); }
 
 TEST_F(ForeignKml, ExtrudesPolygonsToGround) {
@@ -121,7 +121,7 @@ TEST_F(ForeignKml, ReadsAllPolygonsOfMultiGeometry) {
   EXPECT_NEAR(prior.box.max().z(), 25.0, 0.1);
 }
 
-/// A zip archive of one member, stored as it is.
+/// Returns a zip archive with one uncompressed member.
 std::string make_zip(const std::string& name, const std::string& bytes) {
   const auto sum = static_cast<std::uint32_t>(
       crc32(0, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(bytes.size())));

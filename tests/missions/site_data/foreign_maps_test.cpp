@@ -1,5 +1,5 @@
-// Maps as others draw them: heights of all spellings, parts, masts, drawings in other units, and
-// what a file without a system, an index or a known attribute is told.
+// Maps of other programs: notations of heights, building parts, masts, drawings in other units, and
+// notes for files without a reference system, an index or a known attribute.
 #include <fstream>
 
 #include <gmock/gmock.h>
@@ -44,7 +44,7 @@ class ForeignMap : public testing::Test {
   testing_support::TemporaryFolder folder_;
 };
 
-/// A building with these properties.
+/// Returns a building with these properties.
 std::string building(const std::string& properties) {
   return R"({"type":"Feature","id":"way/1","properties":{)" + properties +
          R"(},"geometry":{"type":"Polygon","coordinates":)"
@@ -96,7 +96,7 @@ TEST_F(ForeignMap, ReadsHeightsFromAttributes) {
     SCOPED_TRACE(properties);
     const Prior prior = read("a.geojson", building(properties));
     EXPECT_NEAR(prior.box.max().z(), height, 1e-3);
-    // A lower default never counts for an obstacle.
+    // For an obstacle, a lower default height has no effect.
     const Prior default_height =
         read("a.geojson", building(properties), [](Source& s) { s.height = 5.0; });
     EXPECT_NEAR(default_height.box.max().z(), height, 1e-3);
@@ -134,7 +134,8 @@ TEST_F(ForeignMap, ListsAttributesWhenHeightIsMissing) {
   EXPECT_NEAR(prior.box.max().z(), 17.0, 1e-3);
 }
 
-/// OSM with nodes 1 to 4 of the square, 5 to 8 of a smaller one in it, and more.
+/// Returns an OSM file with nodes 1 to 4 of the square, nodes 5 to 8 of a smaller square inside it,
+/// and `more`.
 std::string osm(const std::string& more) {
   std::string text = "<?xml version=\"1.0\"?><osm version=\"0.6\">";
   const char* const positions[] = {"lat='48' lon='9'",
@@ -188,7 +189,7 @@ TEST_F(ForeignMap, ReadsMastsAndWallsWithHeight) {
   const Prior prior = read("a.osm", osm(mast));
   ASSERT_EQ(prior.objects.size(), 1U);
   EXPECT_NEAR(prior.box.max().z(), 45.0, 1e-2);
-  // A circle of 0.5 m around its place, at 7.46 m east, 11.12 m north.
+  // A circle of 0.5 m around its position, 7.46 m east and 11.12 m north.
   EXPECT_NEAR(prior.box.sizes().x(), 1.08, 0.01);
   EXPECT_NEAR(prior.box.center().x(), 7.46, 0.02);
   EXPECT_NEAR(prior.box.center().y(), 11.12, 0.02);
@@ -219,7 +220,7 @@ TEST_F(ForeignMap, CountsIgnoredNonStructures) {
       HasSubstr("contains no outlines and no other objects with a height (1 areas ignored"));
 }
 
-/// A closed line of 8 x 10 units as AutoCAD writes it.
+/// Returns a closed line of 8 x 10 units as AutoCAD writes it.
 std::string dxf(const std::string& header, double unit) {
   std::string text = "0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1015\n" + header +
                      "0\nENDSEC\n0\nSECTION\n2\nENTITIES\n0\nLWPOLYLINE\n5\nA1\n100\nAcDbEntity\n"

@@ -1,4 +1,4 @@
-// Rasters whose holes are marked in other ways than by a declared number.
+// Rasters whose no-data cells are not marked by a declared number.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ class ForeignRaster : public testing::Test {
     // 500005 5315995 in EPSG:25832.
     return read_prior(source, {.origin = flight::GeodeticPoint{47.997254, 9.000067, 500.0}});
   }
-  /// Row 2 has no heights, all others are at 500 and 512 m.
+  /// Checks that row 2 has no heights and that all others are 500 or 512 m.
   static void expect_hole(const Prior& prior) {
     std::size_t without = 0;
     for (std::size_t i = 0; i < prior.grid.nodes.size(); ++i) {
@@ -66,7 +66,7 @@ TEST_F(ForeignRaster, IgnoresCommonNodataHeights) {
 }
 
 TEST_F(ForeignRaster, ReadsBandUnitsAndRejectsUnknownOnes) {
-  // 500 and 512 are stored, in each of these units.
+  // 500 and 512 m, stored in each of these units.
   for (const auto& [unit, metres] : std::initializer_list<std::pair<const char*, double>>{
            {"feet", 0.3048}, {"US survey foot", 1200.0 / 3937.0}, {"cm", 0.01}, {"Metre", 1.0}}) {
     const Prior prior = read({.unit = unit});

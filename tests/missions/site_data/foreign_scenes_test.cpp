@@ -1,4 +1,4 @@
-// Scenes whose units, extensions and names assimp passes over.
+// Scenes with units, extensions and names that assimp ignores.
 #include <fstream>
 
 #include <gmock/gmock.h>
@@ -35,7 +35,7 @@ class ForeignScene : public testing::Test {
   testing_support::TemporaryFolder folder_;
 };
 
-/// The JSON and the binary part of the cube's scene, 10 m a side.
+/// The JSON and binary parts of the cube's scene with a side of 10 m.
 struct Glb {
   std::string json, binary;
 };
@@ -46,7 +46,7 @@ Glb split_glb(const std::string& glb) {
   return {glb.substr(20, size), glb.substr(28 + size)};
 }
 
-/// The same as text that names a file of its buffer, with more members.
+/// Returns the scene as text with a separate buffer file and additional members.
 std::string gltf(const std::string& uri, const std::string& more = "") {
   std::string json = split_glb(testing_support::make_glb({})).json;
   const std::string length = R"("byteLength":168})";
@@ -93,7 +93,7 @@ TEST_F(ForeignScene, RejectsUnknownRequiredExtensionsByName) {
     EXPECT_THAT(error_message("scene.gltf", gltf("b.bin", member)),
                 AllOf(HasSubstr("scene.gltf: requires the glTF extension " + name),
                       HasSubstr("save the scene without it")));
-    // The same of the binary form.
+    // The same for the binary form.
     const Glb parts = split_glb(testing_support::make_glb({}));
     std::string json = parts.json;
     json.insert(json.find('{') + 1, member);
@@ -126,7 +126,7 @@ TEST_F(ForeignScene, AcceptsRequiredAppearanceExtensions) {
   EXPECT_LT((prior.box.sizes() - Vector3d(10, 10, 10)).norm(), 1e-5);
 }
 
-/// A block of 8 x 10 x 12 m whose lengths are in a unit of so many metres.
+/// Returns a block of 8 x 10 x 12 m with lengths in a unit of `metres`.
 std::string ifc(const std::string& unit, double metres, const std::string& more = "") {
   const auto length = [&](double in_metres) {
     std::string text = std::to_string(in_metres / metres);

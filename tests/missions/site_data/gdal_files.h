@@ -1,4 +1,4 @@
-/// Maps and rasters for tests, written by GDAL: how other programs leave them.
+/// Maps and rasters written by GDAL, as other programs create them.
 #pragma once
 
 #include <filesystem>
@@ -16,23 +16,23 @@ struct WrittenMap {
   std::map<std::string, std::string> attributes;
 };
 
-/// Writes the map; attributes are texts.
+/// Writes the map. Attributes are strings.
 void write_map(const std::filesystem::path& file, const WrittenMap& map);
 
-/// Runs SQL in a GeoPackage, and calls `meanwhile` before it is closed.
+/// Runs SQL in a GeoPackage and calls `meanwhile` before closing it.
 void run_sql(const std::filesystem::path& file, const std::vector<std::string>& statements,
              const std::function<void()>& meanwhile);
 
-/// A GeoTIFF of 10 x 10 cells of 1 m in EPSG:25832 from (500000, 5316000) south, at the height
-/// 500, where column and row are both at least 5 at 512.
+/// GeoTIFF of 10 x 10 cells of 1 m in EPSG:25832, from (500000, 5316000) to the south. The height
+/// is 500, and 512 where both column and row are at least 5.
 struct WrittenRaster {
-  double hole = 500.0;      ///< stored in the cells of row 2
-  bool has_mask = false;    ///< that marks the cells of row 2 as without data
-  bool has_alpha = false;   ///< a second band that does so
-  bool has_nodata = false;  ///< declares `hole`
-  int bands = 1;            ///< of heights
-  std::string unit;         ///< of heights
-  double scale = 1.0;       ///< of stored numbers
+  double hole = 500.0;      ///< value of the cells in row 2
+  bool has_mask = false;    ///< a mask marks the cells of row 2 as no data
+  bool has_alpha = false;   ///< an alpha band marks the cells of row 2 as no data
+  bool has_nodata = false;  ///< declares `hole` as the no-data value
+  int bands = 1;            ///< number of height bands
+  std::string unit;         ///< unit of the heights
+  double scale = 1.0;       ///< scale of the stored numbers
 };
 void write_raster(const std::filesystem::path& file, const WrittenRaster& raster);
 

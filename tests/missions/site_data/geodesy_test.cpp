@@ -1,5 +1,5 @@
-// From reference systems to the site's frame, against formulas, GeographicLib's projections, which
-// share nothing with PROJ's, and cs2cs, PROJ's own program.
+// Transformation from reference systems to the site frame, compared with formulas, with
+// GeographicLib, whose projections are independent of PROJ, and with cs2cs, PROJ's own program.
 #include <bit>
 #include <cstring>
 #include <fstream>
@@ -22,7 +22,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-/// Longitude, latitude, height.
+/// Returns longitude, latitude and height.
 Vector3d geodetic(const ReferenceRequest& request, Vector3d position) {
   geodetic_transform(request).apply({&position, 1});
   return position;
@@ -36,7 +36,7 @@ Vector3d in_site(const std::string& crs, const flight::GeodeticPoint& origin, Ve
   return position;
 }
 
-/// East, north of UTM by GeographicLib; convergence and scale with it.
+/// Easting and northing in UTM by GeographicLib, with convergence and scale.
 struct OnMap {
   double east, north, convergence, scale;
 };
@@ -49,7 +49,7 @@ OnMap utm(double latitude, double longitude, int zone) {
   return map;
 }
 
-/// A value of a file that was written with its highest byte first.
+/// Returns a big-endian value from a file.
 template <typename Value>
 Value big_endian(const std::string& bytes, std::size_t position) {
   std::array<char, sizeof(Value)> turned;
@@ -58,7 +58,7 @@ Value big_endian(const std::string& bytes, std::size_t position) {
   return std::bit_cast<Value>(turned);
 }
 
-// Known answer: the published grid itself (EGM96, 15'), read and interpolated here.
+// Reads and interpolates the published grid itself (EGM96, 15').
 TEST(Geodesy, MatchesPublishedGeoidGrid) {
   std::ifstream stream("/usr/share/proj/egm96_15.gtx", std::ios::binary);
   if (!stream) GTEST_SKIP() << "Debian's proj-data is not there";
@@ -78,7 +78,7 @@ TEST(Geodesy, MatchesPublishedGeoidGrid) {
       const double r = std::floor(row), c = std::floor(column), v = row - r, u = column - c;
       const double expected = (1 - v) * ((1 - u) * node(r, c) + u * node(r, c + 1)) +
                               v * ((1 - u) * node(r + 1, c) + u * node(r + 1, c + 1));
-      // Single precision holds 100 m to 4 micrometres.
+      // In single precision, 100 m has a resolution of 4 micrometres.
       EXPECT_NEAR(egm96_undulation(latitude, longitude), expected, 1e-4)
           << latitude << ", " << longitude;
     }
@@ -93,7 +93,7 @@ TEST(Geodesy, MatchesKnownGeoidUndulations) {
   EXPECT_NEAR(egm96_undulation(13.08, 80.27), -92.245137, 1e-6);
 }
 
-// 1e-9 degrees are a tenth of a millimetre.
+// 1e-9 degrees correspond to 0.1 mm.
 TEST(Geodesy, MatchesUtmProjection) {
   const ReferenceRequest request{.crs = "EPSG:32632", .vertical = HeightDatum::ellipsoid};
   for (double latitude = 1.0; latitude < 84.0; latitude += 9.0) {
@@ -122,7 +122,8 @@ TEST(Geodesy, ConvertsHeightsAboveGeoidOrPad) {
               ThrowsMessage<Error>(HasSubstr("vertical: takeoff requires flight.takeoff")));
 }
 
-// What stands in for something better is within what PROJ states, and that is added up.
+// Errors of substitute transformations are within the limits that PROJ states, and they are added
+// up.
 TEST(Geodesy, AddsErrorsOfSubstitutes) {
   ReferenceRequest request{.crs = "EPSG:27700"};  // Debian has no OSTN15
   request.vertical = HeightDatum::ellipsoid;
@@ -169,7 +170,7 @@ TEST(Geodesy, RejectsInvalidReferenceSystems) {
 }
 
 TEST(Geodesy, ReadsEastFirstByDefault) {
-  // EPSG:4326 has latitude first, EPSG:31467 north first; files have not.
+  // EPSG:4326 has latitude first and EPSG:31467 northing first, but files do not.
   const ReferenceRequest plain{.crs = "EPSG:4326", .vertical = HeightDatum::ellipsoid};
   EXPECT_TRUE(geodetic(plain, {11.4, 48.7, 5.0}).isApprox(Vector3d(11.4, 48.7, 5.0), 1e-12));
   ReferenceRequest by_letter = plain;
@@ -181,8 +182,8 @@ TEST(Geodesy, ReadsEastFirstByDefault) {
   EXPECT_NEAR(geodetic(map, {3451262.0, 5429191.0, 0.0}).x(), 8.332915889, 1e-8);
 }
 
-/// A metre of the map is 0.9996 m on the ground at the central meridian, and 1.0004 at its zone's
-/// border, where the map's north is turned to the east.
+/// A metre on the map is 0.9996 m on the ground at the central meridian. At the border of the zone
+/// it is 1.0004 m, and grid north points east of true north.
 TEST(Geodesy, CorrectsGridScaleAndConvergence) {
   for (const double longitude : {9.0, 10.5, 12.0}) {
     const flight::GeodeticPoint origin{48.0, longitude, 0.0};
@@ -195,22 +196,24 @@ TEST(Geodesy, CorrectsGridScaleAndConvergence) {
   }
 }
 
-/// On a sphere's curve alone: a place 10 km away on the ellipsoid is d^2 / 2 R below the plane.
+/// Only the curvature matters here: a point 10 km away on the ellipsoid is d^2 / 2 R below the
+/// plane.
 TEST(Geodesy, AccountsForEarthCurvature) {
   const Vector3d position = in_site("EPSG:4326", {0.0, 0.0, 0.0}, {0.0, 0.09, 0.0});
-  const double radius = 6378137.0 * (1.0 - 0.00669437999014);  // of the meridian at the equator
+  // Radius of the meridian at the equator.
+  const double radius = 6378137.0 * (1.0 - 0.00669437999014);
   const double angle = 0.09 * M_PI / 180.0;
   EXPECT_NEAR(position.y(), radius * std::sin(angle), 1e-3);
   EXPECT_NEAR(position.z(), -radius * (1.0 - std::cos(angle)), 1e-3);
 }
 
 TEST(Geodesy, CrossesTheAntimeridian) {
-  const double metres = 6378137.0 * M_PI / 180.0;  // of a degree at the equator
+  const double metres = 6378137.0 * M_PI / 180.0;  // length of a degree at the equator
   const Vector3d position = in_site("EPSG:4326", {0.0, 179.9999, 0.0}, {-179.9999, 0.0, 0.0});
   EXPECT_NEAR(position.x(), 0.0002 * metres, 1e-3);
   const Vector3d back = in_site("EPSG:4326", {0.0, -179.9999, 0.0}, {179.9999, 0.0, 0.0});
   EXPECT_NEAR(back.x(), -0.0002 * metres, 1e-3);
-  // UTM zone 60 ends there; what lies beyond has eastings that go on.
+  // UTM zone 60 ends there. Eastings continue beyond its border.
   const OnMap map = utm(-17.0, -179.9, 60);
   const Vector3d fiji = in_site("EPSG:32760", {-17.0, -179.9, 0.0}, {map.east, map.north, 0.0});
   EXPECT_LT(fiji.norm(), 1e-3);
@@ -219,18 +222,18 @@ TEST(Geodesy, CrossesTheAntimeridian) {
 TEST(Geodesy, IsCorrectAtPoles) {
   const flight::GeodeticPoint pole{90.0, 0.0, 0.0};
   const double metres =
-      6399593.6258 * M_PI / 180.0;  // of a degree there: polar radius of curvature
+      6399593.6258 * M_PI / 180.0;  // length of a degree there: polar radius of curvature
   const Vector3d east = in_site("EPSG:4326", pole, {90.0, 89.999, 0.0});
   EXPECT_NEAR(east.x(), 0.001 * metres, 1e-3);
   EXPECT_NEAR(east.y(), 0.0, 1e-6);
   const Vector3d beyond = in_site("EPSG:4326", pole, {180.0, 89.999, 0.0});
   EXPECT_NEAR(beyond.y(), 0.001 * metres, 1e-3);
-  // Polar stereographic: its grid north is along the meridian of 180 degrees.
+  // Polar stereographic projection: its grid north is along the meridian of 180 degrees.
   EXPECT_LT(in_site("EPSG:32661", pole, {2000000.0, 2000000.0, 0.0}).norm(), 1e-3);
 }
 
 TEST(Geodesy, ConvertsFeet) {
-  // Oregon Lambert (ft): EPSG:2994; heights in feet, too, as nothing else is said.
+  // Oregon Lambert (ft), EPSG:2994. Heights are also in feet, because no other unit is set.
   Source source;
   source.crs = "EPSG:2994";
   source.vertical = HeightDatum::ellipsoid;
@@ -243,12 +246,12 @@ TEST(Geodesy, ConvertsFeet) {
   EXPECT_THAT(transform.notes(), testing::Contains(HasSubstr("units of 0.304800 m")));
 }
 
-// A wall of 100 ft whose foot is 1000 ft high. The foot above the ellipsoid:
-// echo 44.050126698 -123.071508372 304.8 | cs2cs EPSG:4326+5773 EPSG:4979 -f %.6f
+// A wall of 100 ft with its base at 1000 ft. Ellipsoidal height of the base: echo 44.050126698
+// -123.071508372 304.8 | cs2cs EPSG:4326+5773 EPSG:4979 -f %.6f
 TEST(Geodesy, ConvertsHeightsInFeetOfReferenceSystem) {
   Source source;
   source.file = "wall.gml";
-  source.crs = "EPSG:2994+8228";  // heights in feet, NAVD88's
+  source.crs = "EPSG:2994+8228";  // heights in feet, NAVD88
   const SiteFrame site{.origin = flight::GeodeticPoint{44.05, -123.07, 0.0}};
   for (const HeightDatum datum : {HeightDatum::geoid, HeightDatum::ellipsoid}) {
     source.vertical = datum;

@@ -1,4 +1,4 @@
-// LAS files as surveys deliver them: old versions, classes, feet, many points.
+// LAS files of real surveys: old versions, classes, feet, many points.
 
 #include <fstream>
 
@@ -81,7 +81,7 @@ TEST_F(Las, KeepsPositionsOfSkycapScans) {
   EXPECT_TRUE(prior.points[0].isApprox(Eigen::Vector3f(1, 2, 3)));
 }
 
-// It is read piece by piece, whatever its size; the file here is mostly a hole on disk.
+// The file is read in chunks, independent of its size. Most of it is a sparse hole.
 TEST_F(Las, ReadsFilesLargerThanTwoGigabytes) {
   const std::filesystem::path file = folder_.file("large.las", make_las(cube_, 2, 3));
   std::filesystem::resize_file(file, max_bytes + (std::size_t{1} << 20));
@@ -94,7 +94,7 @@ TEST_F(Las, RejectsMissingCompressionRecord) {
   EXPECT_THAT([&] { read(bytes); }, ThrowsMessage<Error>(HasSubstr("the LAZ record is missing")));
 }
 
-/// The shared airborne scan of Autzen Stadium: Oregon Lambert in feet, heights in feet.
+/// Airborne scan of Autzen Stadium from the shared models: Oregon Lambert in feet, heights in feet.
 TEST_F(Las, ReadsAirborneScanInFeet) {
   const char* const models = std::getenv("SKYCAP_MODELS");  // NOLINT(concurrency-mt-unsafe)
   const std::filesystem::path file =
@@ -107,7 +107,7 @@ TEST_F(Las, ReadsAirborneScanInFeet) {
   const flight::GeodeticPoint stadium{44.0583, -123.0684, 120.0};
   const Prior prior = read_prior(source, {.origin = stadium});
   EXPECT_EQ(prior.points.size(), 110'000U);
-  // The header's box is 1177.46 ft by 562.7 ft, from 406.26 to 520.51 ft high.
+  // The header states a box of 1177.46 ft by 562.7 ft with heights from 406.26 to 520.51 ft.
   EXPECT_NEAR(prior.box.sizes().x(), 1177.46 * 0.3048, 12.0);
   EXPECT_NEAR(prior.ellipsoid_heights->min, 406.26 * 0.3048, 1e-2);
   EXPECT_NEAR(prior.ellipsoid_heights->max, 520.51 * 0.3048, 1e-2);

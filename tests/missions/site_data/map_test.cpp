@@ -1,4 +1,4 @@
-// Outlines from maps, rasters and their traps.
+// Outlines from maps and rasters, and their special cases.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ class Map : public testing::Test {
   testing_support::TemporaryFolder folder_;
 };
 
-/// A ring round 48 N, 9 E: 0.0002 degrees are 14.93 m east and 22.24 m north.
+/// Ring at 48 N, 9 E: 0.0002 degrees are 14.93 m east and 22.24 m north.
 const std::string ring = "9,48 9.0002,48 9.0002,48.0002 9,48.0002 9,48";
 constexpr double ring_area = 14.9256 * 22.2394;
 
@@ -50,7 +50,7 @@ std::string feature(const std::string& properties, const std::string& rings) {
          R"(,"geometry":{"type":"Polygon","coordinates":[)" + rings + "]}}";
 }
 
-/// A polygon as Google Earth writes it.
+/// Returns a polygon as Google Earth writes it.
 std::string make_kml(const std::string& mode, const std::string& coordinates) {
   return "<?xml version=\"1.0\"?><kml xmlns=\"http://www.opengis.net/kml/2.2\"><Document>"
          "<Placemark><name>court</name><Polygon>" +
@@ -58,7 +58,7 @@ std::string make_kml(const std::string& mode, const std::string& coordinates) {
          "</coordinates></LinearRing></outerBoundaryIs></Polygon></Placemark></Document></kml>";
 }
 
-/// The ring with a height at each corner.
+/// Returns the ring with a height at each corner.
 std::string ring_at(const std::string& height) {
   std::string text;
   for (const char c : ring) text += c == ' ' ? "," + height + " " : std::string(1, c);
@@ -183,7 +183,7 @@ TEST_F(Map, KeepsObjectsWithinPolygon) {
 }
 
 TEST_F(Map, OpensOnlyNamedFile) {
-  // A VRT may name any other file: its driver is not among those that are asked.
+  // A VRT could read any other file, so its driver is not enabled.
   EXPECT_THAT(testing_support::thrown_message(
                   [&] { read("a.tif", "<VRTDataset rasterXSize=\"1\" rasterYSize=\"1\"/>"); }),
               testing::HasSubstr("a.tif: "));

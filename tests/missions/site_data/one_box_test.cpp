@@ -1,4 +1,4 @@
-// One block in many formats is one box.
+// The same block in many formats is read as the same box.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -20,8 +20,8 @@ using testing_support::Cube;
 using testing_support::make_source;
 using testing_support::site_at_cube;
 
-/// The axes of the site on the ellipsoid, by the textbook (Torge & Mueller, Geodesy, 4.1): an
-/// independent way from geodetic coordinates to east, north, up.
+/// Converts geodetic to geocentric coordinates, independently of the product (Torge & Mueller,
+/// Geodesy, 4.1). From these follow the site's east, north and up axes.
 Vector3d geocentric(double latitude_deg, double longitude_deg, double height) {
   constexpr double a = 6378137.0, f = 1.0 / 298.257223563, e2 = f * (2.0 - f);
   const double phi = latitude_deg * M_PI / 180.0, lambda = longitude_deg * M_PI / 180.0;
@@ -42,7 +42,7 @@ Vector3d in_site(double latitude_deg, double longitude_deg, double height) {
   return {d.dot(east), d.dot(up.cross(east)), d.dot(up)};
 }
 
-/// The block's corners on the map, by `cs2cs EPSG:25832 EPSG:4326 -f %.12f`.
+/// Corners of the block by `cs2cs EPSG:25832 EPSG:4326 -f %.12f`.
 const Vector3d low_corner = in_site(48.763121063013, 11.399097711873, 380.0);
 const Vector3d high_corner = in_site(48.763208112067, 11.399237951357, 390.0);
 const AlignedBox3d cube_box = [] {
@@ -65,7 +65,7 @@ class BoxFixture : public testing::Test {
     return read_prior(source, site_at_cube());
   }
 
-  /// Both corners are vertices, and the box is that of all eight.
+  /// Checks that both corners are vertices and that the box contains all eight.
   static void expect_cube(const Prior& prior, double tolerance) {
     ASSERT_EQ(prior.objects.size(), 1U);
     double low = 1e9, high = 1e9;
@@ -189,7 +189,8 @@ TEST_F(BoxFixture, ReportsHeightsInAllDatums) {
   EXPECT_NEAR(prior.sea_level_heights->min, 380.0 - 46.490242, millimetre);
 }
 
-// EGM96 is off by up to a metre, as PROJ states it: that comes on top of what the file is off.
+// According to PROJ, EGM96 has an error of up to 1 m, which is added to the uncertainty of the
+// file.
 TEST_F(BoxFixture, AddsUncertaintyOfGeoidSubstitute) {
   const auto geoid = [](Source& s) { s.vertical = HeightDatum::geoid; };
   EXPECT_EQ(read("cube.gml", make_citygml(cube_)).uncertainty, 0.3);
@@ -210,12 +211,12 @@ TEST_F(BoxFixture, AppliesConfiguredUpAxis) {
     s.pose = SourcePose{};
     s.is_y_up = false;
   });
-  // In the file east is x, up is y and south is z.
+  // In the file, x is east, y is up and z is south.
   EXPECT_TRUE(
       prior.box.isApprox(AlignedBox3d(Vector3d(0, 0, -10), Vector3d(10, 10, 0)), millimetre));
 }
 
-// A property's name is no mark of a format.
+// Property names do not determine the format.
 TEST_F(BoxFixture, ReadsOutlineWithPropertiesOfOtherFormats) {
   std::string text = make_geojson(cube_);
   text.insert(text.find("\"function\""), R"("asset":"CityJSON","glTF":{"asset":1},)");
@@ -273,7 +274,7 @@ TEST_F(BoxFixture, ReadsMeshWithPoseInSiteFrame) {
   const Prior prior = read("cube.obj", make_obj(near), [](Source& s) {
     s.crs.clear();
     s.vertical.reset();
-    s.pose = SourcePose{{12.0, -3.0, 1.0}, M_PI / 2.0};  // its y axis points east
+    s.pose = SourcePose{{12.0, -3.0, 1.0}, M_PI / 2.0};  // the file's y axis points east
   });
   EXPECT_LT((prior.box.min() - Vector3d(12, -13, 1)).norm(), 1e-9) << prior.box.min();
   EXPECT_LT((prior.box.max() - Vector3d(22, -3, 11)).norm(), 1e-9) << prior.box.max();

@@ -1,8 +1,8 @@
-// Legs near prior data, from files to certificates: what a leg is certified against is off by no
-// more than its uncertainty, and then every certified leg keeps its clearance from what is really
-// there. The judge knows the truth and shares no code with those who certify.
+// Legs near prior data, from files to verified legs. The obstacles differ from the ground truth by
+// at most their uncertainty. Each verified leg must then keep its clearance from the ground truth.
+// The independent check knows the ground truth and shares no code with the verification.
 //
-// PRIOR_LEGS in the environment is how many legs are tried; 100000 is the whole test.
+// PRIOR_LEGS in the environment is the number of legs; 100000 is the full test.
 
 #include <cstdlib>
 #include <fstream>
@@ -25,11 +25,11 @@ using Eigen::Vector3d;
 using flight::Segment;
 using testing_support::Cube;
 
-/// Convex things: blocks, points (blocks without sides), and the ground under a height model.
+/// Convex obstacles: blocks, points (blocks without extent) and the columns of a height model.
 using Truth = std::vector<AlignedBox3d>;
 
-/// A leg's distance from a block, too large by rounding at most: it is convex along the leg, so a
-/// golden-section search finds its least, here with a plain point-to-box distance.
+/// Returns the distance between a leg and a block, up to rounding. The distance is convex along the
+/// leg, so a golden-section search of point-to-box distances finds the minimum.
 double distance(const Segment& leg, const AlignedBox3d& box) {
   const auto at = [&](double t) {
     const Vector3d p = leg.from + t * (leg.to - leg.from);
@@ -44,7 +44,7 @@ double distance(const Segment& leg, const AlignedBox3d& box) {
   return std::min({at(low), at(high), at(0.0), at(1.0)});
 }
 
-/// One random site: files in the mission's frame, and the truth that they are off from.
+/// A random site: files in the mission frame, and the ground truth from which they deviate.
 class RandomSite {
  public:
   RandomSite(std::mt19937_64& random, const testing_support::TemporaryFolder& folder, int number)
@@ -60,13 +60,13 @@ class RandomSite {
   double between(double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random_);
   }
-  /// In whole millimetres, as files have them.
+  /// Returns a random length in whole millimetres, as in files.
   double length(double low, double high) { return std::round(1e3 * between(low, high)) / 1e3; }
   Vector3d pose(const AlignedBox3d& box) {
     return (flight::scenes::point_in(random_, box) * 1e3).array().round() / 1e3;
   }
 
-  /// Off by as much as the source may be, in any direction.
+  /// Returns a random error with the magnitude of the source's uncertainty.
   Vector3d error(double uncertainty) {
     return uncertainty *
            flight::scenes::point_in(random_, {Vector3d(-1, -1, -1), Vector3d(1, 1, 1)})
@@ -94,7 +94,8 @@ class RandomSite {
     }
   }
 
-  /// Points of a surface; in the file they are thinned to one in a cube, which stands for the rest.
+  /// Writes points of a surface. The file contains one point for each cube, which represents the
+  /// others.
   void write_scan() {
     Cube corners{.low = pose({Vector3d(-30, -30, 5), Vector3d(20, 20, 25)}),
                  .size = {length(0.05, 1), length(0.05, 1), length(0.05, 1)}};
@@ -105,7 +106,7 @@ class RandomSite {
       truth_.emplace_back(corners.corner(i) + off, corners.corner(i) + off);
   }
 
-  /// Cells of 2 m; what is under them reaches down without end.
+  /// Writes cells of 2 m. The columns below them extend downwards without limit.
   void write_height_model() {
     const Vector3d corner = pose({Vector3d(-30, -30, 0), Vector3d(0, 0, 0)});
     std::string text = "ncols 6\nnrows 5\nxllcorner " + std::to_string(corner.x()) +
@@ -171,7 +172,7 @@ TEST(PriorLegs, AreVerifiedOnlyWhenClearOfGroundTruth) {
         continue;
       }
       ++verified;
-      // Single precision rounds to less than a tenth of a millimetre.
+      // Single precision rounds by less than 0.1 mm.
       ASSERT_GE(min, clearance - 1e-4) << "leg " << verified + rejected;
     }
   }

@@ -17,7 +17,8 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-/// Heights every metre on 0 to 4 east, 0 to 3 north; `z` of each node.
+/// Returns a grid with a height every metre, 0 to 4 m east and 0 to 3 m north. `z` gives the height
+/// of each node.
 template <typename Height>
 HeightGrid make_grid(Height z) {
   HeightGrid grid{.columns = 5, .rows = 4, .nodes = {}, .right = {1, 0}, .down = {0, -1}};
@@ -35,8 +36,8 @@ flight::PriorObstacle surface_model(const HeightGrid& grid) {
   return flight::PriorObstacle(make_obstacle({.file = "dsm.tif"}, prior));
 }
 
-// Above and between the nodes of a cell its highest one is in the way, half a cell beyond the grid
-// too.
+// Between the nodes of a cell, space below the highest one is occupied, also half a cell beyond the
+// grid.
 TEST(SitePriors, FillSurfaceModelBelowMaxNodeOfEachCell) {
   const auto obstacle =
       surface_model(make_grid([](int x, int y) { return x == 2 && y == 1 ? 9.0 : 1.0; }));
@@ -60,7 +61,7 @@ TEST(SitePriors, IgnoreNodesWithoutHeight) {
   EXPECT_NEAR(obstacle.extent().max().x(), 2.5, 1e-6) << "the cells of the last nodes end there";
 }
 
-// A strip is as wide as its cells.
+// The width of a single row is that of its cells.
 TEST(SitePriors, FillSurfaceModelOfOneRow) {
   HeightGrid row{.columns = 3, .rows = 1, .nodes = {}, .right = {2, 0}, .down = {0, -2}};
   for (const float x : {0.0F, 2.0F, 4.0F}) row.nodes.emplace_back(x, 0.0F, 7.0F);
@@ -71,7 +72,7 @@ TEST(SitePriors, FillSurfaceModelOfOneRow) {
   EXPECT_EQ(surface_model(node).distance({3.9, 2.1, 4.9}, 10), 0.0);
 }
 
-// A large grid is held in fewer columns, none of which is lower than any of its nodes.
+// A large grid is stored with fewer columns. None of them is lower than any of its nodes.
 TEST(SitePriors, KeepMaxHeightsInDownsampledSurfaceModel) {
   HeightGrid grid{.columns = 1700, .rows = 1700, .nodes = {}, .right = {1, 0}, .down = {0, 1}};
   for (int row = 0; row < 1700; ++row) {
@@ -104,12 +105,12 @@ TEST(Terrain, InterpolatesPlaneThroughNodes) {
   EXPECT_NEAR(terrain.height({-0.4, -0.4}).value(), 0.0, 1e-5);
 }
 
-// Beside a node without height, each node still has its own cell.
+// Nodes next to a missing node still have their own cells.
 TEST(Terrain, EndsHalfACellFromLastNodes) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   Prior prior;
   prior.grid = make_grid([](int, int) { return 2.0; });
-  prior.grid.nodes[1 * 5 + 2] = {nan, nan, nan};  // at 2, 2
+  prior.grid.nodes[1 * 5 + 2] = {nan, nan, nan};  // position (2, 2)
   const Terrain terrain({&prior});
   EXPECT_NEAR(terrain.height({1.45, 2.0}).value(), 2.0, 1e-6);
   EXPECT_NEAR(terrain.height({2.0, 1.45}).value(), 2.0, 1e-6);
@@ -117,7 +118,7 @@ TEST(Terrain, EndsHalfACellFromLastNodes) {
   EXPECT_FALSE(terrain.height({2.3, 2.3}));
 }
 
-// Of a grid that is too large to be held as it is, a peak between those nodes that are kept stays.
+// In a grid that is too large to be stored completely, peaks between the stored nodes are kept.
 TEST(Terrain, KeepsPeaksOfLargeGrid) {
   Prior prior;
   prior.grid = {.columns = 2000, .rows = 2000, .nodes = {}, .right = {1, 0}, .down = {0, 1}};
@@ -140,7 +141,7 @@ TEST(Terrain, KeepsPeaksOfLargeGrid) {
   }
 }
 
-/// A flat obstacle of columns of 1 m on the lattice of metres where `is_there` says so.
+/// Returns a flat obstacle of 1 m columns at integer positions where `is_there` returns true.
 template <typename IsThere>
 flight::PriorObstacleConfig ground_where(const IsThere& is_there, double z) {
   flight::PriorObstacleConfig ground{.name = "ground", .uncertainty = 0.4, .is_ground = true};
@@ -153,7 +154,7 @@ flight::PriorObstacleConfig ground_where(const IsThere& is_there, double z) {
   return ground;
 }
 
-/// The highest z there that is in the way, within 50 m.
+/// Returns the highest occupied z at this position, within 50 m.
 double top_at(const flight::PriorObstacle& obstacle, double x, double y) {
   double low = -50.0, high = 50.0;
   while (high - low > 1e-6) {
@@ -163,7 +164,8 @@ double top_at(const flight::PriorObstacle& obstacle, double x, double y) {
   return low;
 }
 
-// A tile turned by 45 degrees: beside it, within the box around it, and beyond, there is the plane.
+// Around a tile rotated by 45 degrees, the plane applies, both inside and outside the tile's
+// bounding box.
 TEST(UnknownGround, IsPlaneOutsideRotatedTile) {
   const UnknownGround unknown(
       {ground_where([](double x, double y) { return std::abs(x) + std::abs(y) < 20.0; }, 7.0)},
@@ -177,8 +179,8 @@ TEST(UnknownGround, IsPlaneOutsideRotatedTile) {
   EXPECT_THAT(unknown.note(), testing::HasSubstr("plane z = -3.00 m"));
 }
 
-// A hole within the ground is as high as the highest ground beside it, a gap between two tiles that
-// is open to the sides is the plane.
+// A hole within the ground is as high as the highest ground around it. A gap between two tiles that
+// is open to the sides has the height of the plane.
 TEST(UnknownGround, HasMaxHeightOfSurroundingGround) {
   const auto in_hole = [](double x, double y) { return x > 5 && x < 8 && y > -4 && y < 3; };
   const auto west = [](double x, double) { return x < -10; };
@@ -201,7 +203,7 @@ TEST(Terrain, UsesMaxHeightOfSurface) {
   EXPECT_NEAR(Terrain({&prior}).height({4.0, 7.0}).value(), 3.0, 1e-9);
 }
 
-// A box of 2 x 3 x 4 m, as its file turns it: points on walls and roof, outward, none below.
+// A rotated box of 2 x 3 x 4 m: points are on walls and roof and face outward. The bottom has none.
 TEST(SurfacePoints, CoverVisibleSurfaceFacingOutward) {
   Object object{.id = "1", .mesh = flight::scenes::box({0, 0, 0}, {2, 3, 4})};
   object.surfaces.assign(object.mesh.triangles.size(), SurfaceKind::wall);

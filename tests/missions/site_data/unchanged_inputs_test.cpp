@@ -1,5 +1,5 @@
-// What is read is never written to, nor beside: folders that nobody may write to, and the sums of
-// all files before and after.
+// Input files and their folders are never modified. The folders are read-only, and the checksums of
+// all files are compared before and after reading.
 #include <fstream>
 #include <iterator>
 
@@ -26,7 +26,7 @@ std::string read_bytes(const fs::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// All files of a folder with their sums and the times that they were written.
+/// Returns the checksum and modification time of each file in a folder.
 std::map<std::string, std::pair<std::uint32_t, fs::file_time_type>> compute_checksums(
     const fs::path& folder) {
   std::map<std::string, std::pair<std::uint32_t, fs::file_time_type>> sums;
@@ -40,7 +40,7 @@ std::map<std::string, std::pair<std::uint32_t, fs::file_time_type>> compute_chec
 
 class InputFiles : public testing::Test {
  protected:
-  /// Reads a file of the folder, which nobody may write to meanwhile.
+  /// Reads a file while its folder is read-only.
   Prior read(const fs::path& file, const std::function<void(Source&)>& change = {}) {
     const auto before = compute_checksums(folder_.path());
     fs::permissions(file.parent_path(), fs::perms::owner_read | fs::perms::owner_exec);
@@ -81,7 +81,7 @@ TEST_F(InputFiles, StayUnchangedWhenDatabaseWithLogIsRead) {
   fs::create_directories(live);
   fs::create_directories(left);
   testing_support::write_map(live / "hall.gpkg", {.attributes = {{"height", "12"}}});
-  // As a program leaves it that is still at it, or was killed.
+  // State of the file while another program is writing it, or after that program was killed.
   testing_support::run_sql(
       live / "hall.gpkg",
       {"PRAGMA journal_mode=WAL", "PRAGMA wal_autocheckpoint=0", "UPDATE hall SET height='40'"},
@@ -95,7 +95,7 @@ TEST_F(InputFiles, StayUnchangedWhenDatabaseWithLogIsRead) {
   EXPECT_NEAR(prior.box.max().z(), 40.0, 0.01);
   EXPECT_THAT(prior.notes,
               Contains(HasSubstr("read from a copy that includes the changes in its log")));
-  // In that mode, but without a log, it is read where it is.
+  // In WAL mode without a log, the file is read in place.
   fs::remove(left / "hall.gpkg-wal");
   EXPECT_NEAR(read(left / "hall.gpkg", set_base).box.max().z(), 12.0, 0.01);
 }

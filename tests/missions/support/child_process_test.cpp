@@ -45,7 +45,7 @@ TEST(ChildProcess, EndsAfterTimeout) {
   EXPECT_EQ(error_message(loop),
             "x.file: timeout: their library took more than 1 s, which is too long for an intact "
             "file of this size");
-  const ChildProcess left({"x.file", "their library"}, loop);  // goes with its owner
+  const ChildProcess left({"x.file", "their library"}, loop);  // ended by its destructor
 }
 
 }  // namespace

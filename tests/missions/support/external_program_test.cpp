@@ -1,4 +1,4 @@
-// Programs that are started, and ended.
+// Start and termination of external programs.
 #include "missions/support/external_program.h"
 
 #include <chrono>
@@ -19,7 +19,7 @@ TEST(ExternalProgram, ReturnsExitCodeAndOutput) {
   EXPECT_EQ(run_external_program({"no-such-program"}, "/").exit_code, 127);
 }
 
-// GNU parallel takes the first signal for a wish to begin nothing new.
+// GNU parallel treats the first signal as a request to start no new jobs.
 TEST(ExternalProgram, IsStoppedEvenWhenFirstSignalIsIgnored) {
   for (const char* script :
        {"exec sleep 60", "trap 'trap - TERM' TERM; while :; do sleep 0.05; done",

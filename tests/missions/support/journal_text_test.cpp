@@ -39,7 +39,7 @@ TEST(JournalIdentity, NamesChangedSettings) {
       "j: cannot resume: limits.max_views changed from \"12\" to \"13\"; restore it, or " + cure);
 }
 
-// Earlier journals count what limits refuse as unreachable, and say nothing of a format.
+// Earlier journals count rejected views as unreachable, and have no format entry.
 TEST(JournalIdentity, ReportsVersionOfJournalInOtherFormat) {
   const std::string end = ", whose journals cannot be resumed by this version; " + cure;
   EXPECT_EQ(error_message(R"({"version": "0.1.0", "seed": 7})", make_identity(run)),
@@ -52,7 +52,7 @@ TEST(JournalIdentity, ReportsVersionOfJournalInOtherFormat) {
             "j: was written by version (unknown)" + end);
 }
 
-// Those of scans have none.
+// Journals of scans have no format entry.
 TEST(JournalIdentity, RequiresFormatOnlyWhenPresent) {
   const std::string identity = identity_text(run, {{"formats", "las"}});
   EXPECT_NO_THROW(require_same_survey("j", identity, identity, cure));

@@ -23,7 +23,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-/// Points of a sphere of 2 m, some 0.07 m apart, without those below `min_z`.
+/// Returns points of a sphere of 2 m, about 0.07 m apart, without points below `min_z`.
 geometry::AttributedCloud ball_cloud(float min_z = -10.0F) {
   const geometry::SurfaceSamples samples =
       geometry::sample_surface(sim::sphere({1, 2, 3}, 2.0, 5), 8000, 4);
@@ -44,13 +44,13 @@ double largest_error(const geometry::Mesh& mesh) {
   return largest;
 }
 
-// A sphere has area 4 pi r^2, and its triangles face away from its centre.
+// A sphere has the area 4 pi r^2, and its triangles face away from its centre.
 TEST(Reconstruct, ReturnsClosedOutwardSphere) {
   const geometry::AttributedCloud cloud = ball_cloud();
   const support::Reconstruction result = support::reconstruct(cloud.positions, cloud.normals, {});
   EXPECT_EQ(result.points, cloud.positions.size());
   EXPECT_EQ(result.trimmed_triangles, 0U);
-  EXPECT_LT(largest_error(result.mesh), 0.02);  // a third of the points' spacing
+  EXPECT_LT(largest_error(result.mesh), 0.02);  // a third of the point spacing
   EXPECT_NEAR(geometry::surface_area(result.mesh), 16.0 * std::numbers::pi, 0.5);
   for (const auto& [a, b, c] : result.mesh.triangles) {
     const auto& v = result.mesh.vertices;
@@ -66,8 +66,8 @@ TEST(Reconstruct, EstimatesMissingNormals) {
   EXPECT_NEAR(geometry::surface_area(result.mesh), 16.0 * std::numbers::pi, 0.5);
 }
 
-// Of the sphere above z = 2, a height of 3 of its 4 m: area 2 pi r h. Poisson closes the hole
-// below; what has no points around it goes.
+// The sphere above z = 2, 3 m of its 4 m height, has the area 2 pi r h. Poisson reconstruction
+// closes the hole below. Triangles without points nearby are removed.
 TEST(Reconstruct, KeepsHoles) {
   const geometry::AttributedCloud cloud = ball_cloud(2.0F);
   const support::Reconstruction trimmed = support::reconstruct(cloud.positions, cloud.normals, {});
@@ -130,7 +130,7 @@ TEST_F(ReconstructCommand, NamesCloudWithTooFewPoints) {
   EXPECT_FALSE(std::filesystem::exists(folder / "few_mesh.ply"));
 }
 
-/// The program in a folder of its own, far from where it was built.
+/// The program in a separate folder, independent of its build folder.
 class MovedProgram : public testing::Test {
  protected:
   MovedProgram() {

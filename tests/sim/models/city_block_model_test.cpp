@@ -19,7 +19,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Boxes of the buildings, by the number in their parts' names.
+/// Returns the bounding boxes of the buildings by the number in their part names.
 std::map<int, Eigen::AlignedBox3d> buildings(const models::Parts& parts) {
   std::map<int, Eigen::AlignedBox3d> boxes;
   for (const models::Part& part : parts) {
@@ -55,7 +55,7 @@ TEST(CityBlock, HasNineToSixteenSeparateBuildingsOnItsGround) {
       EXPECT_TRUE(has(parts, what)) << what << ", seed " << seed;
     }
   }
-  EXPECT_GT(counts.size(), 2U);  // the seed decides how many
+  EXPECT_GT(counts.size(), 2U);  // the number depends on the seed
 }
 
 TEST(CityBlock, HasClosedPartsThatFaceOutward) {
@@ -94,7 +94,7 @@ TEST(CityBlock, HasArcadesThatAreOpenAlongWalkAndThroughArches) {
       if (name.find("arcade wall") == std::string::npos) continue;
       ++arcades;
       const Eigen::AlignedBox3d wall = bounding_box(mesh);
-      // The walk is behind the wall, 2.9 m wide.
+      // The walkway behind the wall is 2.9 m wide.
       const double eye = 1.6, walk = wall.max().y() + 1.45;
       EXPECT_FALSE(scene.is_blocked({wall.min().x(), walk, eye}, {wall.max().x(), walk, eye}));
       int rays = 0, through = 0;

@@ -1,4 +1,4 @@
-/// What the model tests ask of solids.
+/// Common check of solids for the model tests.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,8 @@
 
 namespace skycap::sim::models {
 
-/// Why a mesh is not one closed, consistently oriented, outward-facing surface; empty if it is.
+/// Returns why the mesh is not a closed, consistently oriented, outward-facing surface. Empty if it
+/// is.
 inline std::string closedness_error(const geometry::Mesh& mesh) {
   std::vector<std::array<std::uint32_t, 2>> sides, reversed;
   for (const auto& triangle : mesh.triangles) {

@@ -30,7 +30,7 @@ class Families : public testing::TestWithParam<std::string_view> {
   }
 };
 
-/// Random numbers for the rays of a test.
+/// Random positions for the rays of a test.
 class Positions {
  public:
   Vector3d within(const AlignedBox3d& box) {
@@ -38,7 +38,7 @@ class Positions {
     const double x = share(random_), y = share(random_), z = share(random_);
     return box.min() + Vector3d(x, y, z).cwiseProduct(box.sizes());
   }
-  /// Outside of all scenes, above z = 0.5.
+  /// Returns a position outside all scenes, above z = 0.5.
   Vector3d around() {
     std::normal_distribution<double> normal;
     const double x = normal(random_), y = normal(random_), z = normal(random_);
@@ -121,7 +121,7 @@ INSTANTIATE_TEST_SUITE_P(All, Families,
                          testing::ValuesIn(model_families().begin(), model_families().end()),
                          param_name);
 
-/// How many parts have each name.
+/// Returns the number of parts with each name.
 std::map<std::string, int> count_objects(const FamilyScene& scene) {
   std::map<std::string, int> counts;
   for (const Part& part : scene.parts) ++counts[part.name];
@@ -179,7 +179,8 @@ TEST(FamilyScenes, HaveGlassAndMirrorInGlassHouseOnly) {
     }
     EXPECT_EQ(surfaces.size(), builtin_model(name).triangles.size());
     EXPECT_EQ(std::ranges::count(surfaces, Surface::glass),
-              3 * std::ranges::count(surfaces, Surface::mirror));  // three fronts, and one
+              // Three fronts and one single surface.
+              3 * std::ranges::count(surfaces, Surface::mirror));
     EXPECT_GT(std::ranges::count(surfaces, Surface::matt), 0);
   }
 }

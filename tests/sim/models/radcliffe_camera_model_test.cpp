@@ -23,7 +23,7 @@ namespace {
 using Eigen::Vector3d;
 using std::numbers::pi;
 
-constexpr double full_size = 42.672 / 40.0;  // metres of the building in a metre of the model
+constexpr double full_size = 42.672 / 40.0;  // metres of the building for each metre of the model
 const models::RadcliffeTable table;
 
 const geometry::Mesh& building() {
@@ -36,8 +36,8 @@ const Scene& scene() {
   return model_scene;
 }
 
-/// The distance from the axis, at full size, at which a level ray towards the axis meets the
-/// building at a full-size height; zero if it passes.
+/// Returns the full-size radius at which a level ray towards the axis meets the building at height
+/// z. Returns 0 if the ray misses.
 double radius_at(double azimuth, double z) {
   const Vector3d out(std::cos(azimuth), std::sin(azimuth), 0.0);
   const Vector3d from = 30.0 * out + Vector3d(0.0, 0.0, z / full_size);
@@ -45,8 +45,8 @@ double radius_at(double azimuth, double z) {
   return hit ? (30.0 - hit->distance) * full_size : 0.0;
 }
 
-/// How many separate stretches of a ring at height z satisfy the condition on their radius. 14,400
-/// rays are one each 6 mm at the wall.
+/// Returns the number of separate intervals on the ring at height z whose radius meets the
+/// condition. With 14,400 rays, the step at the wall is 6 mm.
 template <typename Condition>
 int stretches(double z, Condition condition) {
   constexpr int rays = 14400;
@@ -67,7 +67,7 @@ int count_within(double radius, double z) {
   return stretches(z, [&](double r) { return r < radius; });
 }
 
-// A chord error of 4 mm at the model's size; facets meet the rays anywhere on their chord.
+// A chord error of 4 mm in model size. Rays hit facets anywhere on their chord.
 constexpr double facet = 0.006;
 
 TEST(RadcliffeCamera, IsFortyMetresTall) {
@@ -75,25 +75,26 @@ TEST(RadcliffeCamera, IsFortyMetresTall) {
   EXPECT_NEAR(box.min().z(), 0.0, 1e-9);
   EXPECT_NEAR(box.max().z(), 40.0, 1e-9);
   EXPECT_LT(box.sizes().head<2>().maxCoeff(), 40.0);
-  // 100 ft over two projections, on the east-west axis without the steps.
-  EXPECT_NEAR(2 * radius_at(0.0, 6.2), 30.48, 0.4);  // on a keystone or beside it
+  // 100 ft across two projections, on the east-west axis without the steps.
+  EXPECT_NEAR(2 * radius_at(0.0, 6.2), 30.48, 0.4);  // on a keystone or next to it
 }
 
 TEST(RadcliffeCamera, HasStageHeightsOfTable) {
-  // Stated: 80 ft to the balustrade and 60 ft above it.
+  // Source: 80 ft to the balustrade and 60 ft above it.
   EXPECT_NEAR(table.balustrade_top(), 24.4, 0.02);
   EXPECT_NEAR(table.total_height - table.balustrade_top(), 60 * 0.3048, 0.05);
-  // The coping of the balustrade and the roof of the drum's walk, from above.
+  // The coping of the balustrade and the roof of the drum's walkway, measured from above.
   const auto height_at = [&](double azimuth, double radius) {
     const Vector3d from(radius / full_size * std::cos(azimuth),
                         radius / full_size * std::sin(azimuth), 60.0);
     const auto hit = scene().first_hit(from, -Vector3d::UnitZ());
     return hit ? (60.0 - hit->distance) * full_size : 0.0;
   };
-  const double between_piers = pi / 8;  // the middle of a niche bay
+  const double between_piers = pi / 8;  // middle of a niche bay
   EXPECT_NEAR(height_at(between_piers, table.balustrade_radius), table.balustrade_top(), 0.03);
-  EXPECT_NEAR(height_at(pi / 4, 14.85), table.balustrade_foot(), 0.06);  // the cornice
-  // Under the entablature heights show from the side: the edge of the ground stage's cornice.
+  EXPECT_NEAR(height_at(pi / 4, 14.85), table.balustrade_foot(), 0.06);  // cornice
+  // Below the entablature, heights are measured from the side: the edge of the ground stage's
+  // cornice.
   const double edge = table.ground_wall_radius + table.ground_cornice_overhang;
   EXPECT_NEAR(radius_at(pi / 8, table.ground_stage_top() - 0.03), edge, 0.03);
   EXPECT_LT(radius_at(pi / 8, table.ground_stage_top() + 0.03), edge - 0.04);
@@ -102,7 +103,7 @@ TEST(RadcliffeCamera, HasStageHeightsOfTable) {
 
 TEST(RadcliffeCamera, HasStageRadiiOfTable) {
   const double niche_bay = pi / 8;
-  EXPECT_NEAR(radius_at(niche_bay + 0.09, 3.0), 14.0, facet);  // beside the niche
+  EXPECT_NEAR(radius_at(niche_bay + 0.09, 3.0), 14.0, facet);  // next to the niche
   EXPECT_NEAR(radius_at(niche_bay, 8.3), 14.3, facet);         // plinth
   EXPECT_NEAR(radius_at(niche_bay + 0.075, 17.5), 13.2, facet);
   EXPECT_NEAR(radius_at(pi / 16, 28.6), 8.5, facet);  // drum, between window and buttress
@@ -111,9 +112,10 @@ TEST(RadcliffeCamera, HasStageRadiiOfTable) {
 
 TEST(RadcliffeCamera, HasSixteenAlternatingBays) {
   EXPECT_EQ(count_beyond(14.8, 6.1), 8);  // projections
-  EXPECT_EQ(count_within(14.8, 6.1), 8);  // and bays between them
-  EXPECT_EQ(count_within(13.6, 3.0), 8);  // their niches
-  // Under each arch's crown the glazing, 0.9 m behind the front, or a bar 8 cm before it.
+  EXPECT_EQ(count_within(14.8, 6.1), 8);  // bays between the projections
+  EXPECT_EQ(count_within(13.6, 3.0), 8);  // niches in the projections
+  // Below the crown of each arch is the glazing, 0.9 m behind the front, or a bar 8 cm in front of
+  // it.
   for (int bay = 0; bay < 8; ++bay) {
     const double aside = 0.03, panel = table.projection_front - table.arch_depth;
     EXPECT_NEAR(radius_at(bay * pi / 4 + aside, 5.3), panel / std::cos(aside) + 0.04, 0.05);
@@ -123,7 +125,8 @@ TEST(RadcliffeCamera, HasSixteenAlternatingBays) {
 TEST(RadcliffeCamera, HasThirtyTwoColumnsInPairs) {
   EXPECT_EQ(count_beyond(13.6, 17.9), 32);
   EXPECT_EQ(count_beyond(13.6, 10.0), 32);
-  // Three quarters of the shaft stand free: its front is an axis radius and its own from the axis.
+  // Three quarters of the shaft are free. Its front is at the column's axis radius plus its own
+  // radius.
   double max = 0.0;
   for (int i = 0; i < 2000; ++i) max = std::max(max, radius_at(2 * pi * i / 2000, 11.0));
   EXPECT_NEAR(max, table.column_axis_radius + table.column_radius, 0.01);
@@ -131,7 +134,8 @@ TEST(RadcliffeCamera, HasThirtyTwoColumnsInPairs) {
 
 TEST(RadcliffeCamera, HasWindowsAndNichesInTwoTiers) {
   const double foot = table.column_foot();
-  const auto is_open = [](double r) { return r < 12.95; };  // 0.25 behind the wall, bars included
+  // 0.25 m behind the wall, including bars.
+  const auto is_open = [](double r) { return r < 12.95; };
   EXPECT_EQ(stretches(foot + table.window_sill + 0.3, is_open), 8);  // below the upper niches
   EXPECT_EQ(stretches(foot + table.upper_niche_sill + 1.0, is_open), 16);
   EXPECT_EQ(stretches(foot + table.mezzanine_sill + 0.4, is_open), 16);
@@ -147,11 +151,12 @@ TEST(RadcliffeCamera, HasVasesOnColumnsAndButtressesOnDrum) {
 }
 
 TEST(RadcliffeCamera, HasRibbedDomeAndOpenLantern) {
-  // At a height on the dome the shell is where no rib or roll is: the least radius of the ring.
+  // At a height on the dome, the shell has the minimum radius of the ring. Ribs and rolls have
+  // larger radii.
   const double z = table.dome_foot() + 3.0;
   double shell = 100.0;
   for (int i = 0; i < 3000; ++i) shell = std::min(shell, radius_at(2 * pi * i / 3000, z));
-  EXPECT_EQ(count_beyond(shell + 0.1, z), 16);  // ribs, of 0.2 m; rolls have 0.04 m
+  EXPECT_EQ(count_beyond(shell + 0.1, z), 16);  // ribs have 0.2 m, rolls 0.04 m
   EXPECT_EQ(count_beyond(shell + 0.02, z), 16 * (1 + table.lead_rolls_between_ribs));
   EXPECT_EQ(count_within(table.lantern_radius - 0.15, table.lantern_foot() + 1.2), 8);
 }
@@ -160,8 +165,8 @@ TEST(RadcliffeCamera, IsSymmetricExceptForEntrance) {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> azimuth(-pi / 8, pi / 8), height(1.0, 42.0);
   for (int i = 0; i < 500; ++i) {
-    // Pairs of eighths off the north; a ray that grazes an edge may go either way. Window pediments
-    // are triangular and segmental in turn: compare every second.
+    // Opposite positions. Rays that graze an edge may differ. Window pediments are alternately
+    // triangular and segmental, so every second window is compared.
     const double a = azimuth(random), z = height(random);
     const double one = radius_at(a, z), other = radius_at(a + pi, z);
     if (std::abs(one - radius_at(a + 1e-4, z)) > 1e-2) continue;
@@ -183,7 +188,8 @@ TEST(RadcliffeCamera, HasClosedPartsThatFaceOutward) {
   }
 }
 
-/// Solid all through, at full size: no ray from outside may come here.
+/// Returns true if the full-size point is inside the solid interior, which no ray from outside may
+/// reach.
 bool is_inside(const Vector3d& point) {
   const double r = point.head<2>().norm() * full_size, z = point.z() * full_size;
   if (z < 0.05) return false;
@@ -193,9 +199,10 @@ bool is_inside(const Vector3d& point) {
   return r < 1.0 && z < table.cap_foot();
 }
 
-/// Single precision rounds by 4 micrometres at 50 m, so that a ray which touches a sharp edge may
-/// miss its front and meet its back, and so may its two neighbours along the edge. A surface that
-/// really shows its back does so on a side.
+/// Returns true if the surface is visible from the back. At 50 m, single precision has a resolution
+/// of 4 micrometres. A ray that touches a sharp edge may miss its front and hit its back, and so
+/// may its two neighbours along the edge. A back that is really visible is visible on one side of
+/// the ray as well.
 bool is_seen_from_behind(const Scene& model, const Vector3d& origin, const Vector3d& direction) {
   const Vector3d right = geometry::any_orthogonal(direction), up = direction.cross(right);
   int backs = 0;
@@ -210,12 +217,12 @@ bool is_seen_from_behind(const Scene& model, const Vector3d& origin, const Vecto
 
 struct RayCounts {
   long hits = 0;
-  long backs = 0;    ///< of a triangle from behind
+  long backs = 0;    ///< hits on the back of a triangle
   long entered = 0;  ///< hits inside the building
 };
 
-/// Casts `count` rays at the building: half from far outside and half from just before where those
-/// arrive, in any direction: out of niches, from between balusters.
+/// Casts `count` rays at the building. Half start far outside. The other half start just in front
+/// of those hits, in random directions: out of niches and between balusters.
 RayCounts cast_rays(const Scene& model, const Eigen::AlignedBox3d& box, long count) {
   std::mt19937_64 random(11);
   std::normal_distribution<double> normal;
@@ -229,7 +236,7 @@ RayCounts cast_rays(const Scene& model, const Eigen::AlignedBox3d& box, long cou
     const auto hit = model.first_hit(origin, direction);
     if (!hit) return hit;
     const Vector3d point = origin + hit->distance * direction;
-    if (point.z() <= 0.0) return hit;  // the underside, from below the ground
+    if (point.z() <= 0.0) return hit;  // the underside, seen from below the ground
     ++counts.hits;
     counts.backs +=
         hit->normal.dot(direction) > 0.0 && is_seen_from_behind(model, origin, direction);
@@ -238,7 +245,8 @@ RayCounts cast_rays(const Scene& model, const Eigen::AlignedBox3d& box, long cou
   };
   for (long i = 0; i < count / 2; ++i) {
     Vector3d from = box.center() + 45.0 * random_direction();
-    if (from.z() < 0.01) from.z() = 2.0 * box.center().z() - from.z();  // not under the ground
+    // Keep the start above the ground.
+    if (from.z() < 0.01) from.z() = 2.0 * box.center().z() - from.z();
     Vector3d target;
     for (int axis = 0; axis < 3; ++axis) {
       target[axis] = box.min()[axis] + share(random) * box.sizes()[axis];
@@ -291,8 +299,8 @@ TEST(RadcliffeCamera, KeepsShapeAtAllLevelsOfDetail) {
   EXPECT_NEAR(bounding_box(coarse).max().z(), 40.0, 1e-9);
   EXPECT_NEAR(bounding_box(fine).max().z(), 40.0, 1e-9);
 
-  // Points of the coarse surface lie on the standard one up to both chord errors and what is left
-  // out: seen from 2 m outside, the first surface is nearly at the same distance.
+  // Points of the coarse surface are on the standard surface, up to both chord errors and omitted
+  // details. From 2 m outside, the first surfaces have nearly the same distance.
   const Scene coarse_scene(coarse);
   std::vector<double> differences;
   for (int i = 0; i < 2000; ++i) {

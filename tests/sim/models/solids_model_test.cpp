@@ -28,17 +28,17 @@ TEST(Fineness, KeepsChordErrorWithMinChordCount) {
       const int chords = Fineness{error}.chords(radius, 2 * pi);
       const auto sagitta = [&](int n) { return radius * (1 - std::cos(pi / n)); };
       EXPECT_LE(sagitta(chords), error * (1 + 1e-6));
-      EXPECT_GT(sagitta(chords - 1), error);  // no more chords than it takes
+      EXPECT_GT(sagitta(chords - 1), error);  // the number of chords is the minimum
     }
   }
 }
 
 TEST(Profile, KeepsArcRadius) {
-  // A quarter turn to the left from (1, 0) to (0, 1) is the unit circle's.
+  // A quarter turn to the left from (1, 0) to (0, 1) is part of the unit circle.
   const Polyline2 arc = Profile(Fineness{1e-4}, 1, 0).arc_to(0, 1, pi / 2).points();
   EXPECT_GT(arc.size(), 20U);
   for (const Vector2d& point : arc) EXPECT_NEAR(point.norm(), 1.0, 1e-12);
-  // To the right it bulges the other way, round (1, 1).
+  // To the right it curves the other way, around (1, 1).
   for (const Vector2d& point : Profile(Fineness{1e-4}, 1, 0).arc_to(0, 1, -pi / 2).points()) {
     EXPECT_NEAR((point - Vector2d(1, 1)).norm(), 1.0, 1e-12);
   }
@@ -49,7 +49,7 @@ double area(const Polyline2& polygon, const std::vector<std::array<std::uint32_t
   for (const auto& [a, b, c] : triangles) {
     const Vector2d u = polygon[b] - polygon[a], v = polygon[c] - polygon[a];
     const double twice = u.x() * v.y() - u.y() * v.x();
-    EXPECT_GT(twice, 0.0);  // counter-clockwise, not collapsed
+    EXPECT_GT(twice, 0.0);  // counter-clockwise and not degenerate
     sum += 0.5 * twice;
   }
   return sum;
@@ -64,7 +64,7 @@ double shoelace_area(const Polyline2& polygon) {
   return 0.5 * twice;
 }
 
-// Property: n - 2 counter-clockwise triangles whose areas add up to the polygon's (shoelace).
+// Property: n - 2 counter-clockwise triangles whose total area is that of the polygon (shoelace).
 TEST(Triangulate, CoversStarsWithCollinearCorners) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> radius(0.3, 1.0);
@@ -74,7 +74,7 @@ TEST(Triangulate, CoversStarsWithCollinearCorners) {
       const double angle = 2 * pi * i / 20;
       star.push_back(radius(random) * Vector2d(std::cos(angle), std::sin(angle)));
     }
-    Polyline2 polygon;  // with a third point in each side
+    Polyline2 polygon;  // with a third point on each side
     for (std::size_t i = 0; i < star.size(); ++i) {
       const Vector2d &a = star[i], &b = star[(i + 1) % star.size()];
       polygon.push_back(a);
@@ -86,7 +86,7 @@ TEST(Triangulate, CoversStarsWithCollinearCorners) {
   }
 }
 
-// The tops of equal arches are in one line but for rounding: no cut may run along them.
+// Up to rounding, the tops of equal arches are collinear. No cut may run along them.
 TEST(Triangulate, CoversArcadesOfAnyWidth) {
   const Fineness fine{0.01};
   for (int bays = 3; bays <= 12; ++bays) {
@@ -118,12 +118,12 @@ TEST(Solids, HaveCorrectVolumesAndAreClosed) {
   EXPECT_EQ(closedness_error(ball), "");
   EXPECT_NEAR(signed_volume(ball), 4 * pi / 3, 4e-3);  // a shell of up to 3e-4 is missing
 
-  // Pappus: area of the section times the way of its centroid; 1 - 1e-5 for the polygon.
+  // Pappus: section area times the path of its centroid; 1 - 1e-5 for the polygon.
   const Mesh ring = revolve_ring({{3, 0}, {4, 0}, {4, 2}, {3, 2}}, 1000);
   EXPECT_EQ(closedness_error(ring), "");
   EXPECT_NEAR(signed_volume(ring), 2 * 2 * pi * 3.5, 1e-3);
 
-  // A square moulding round a square: a frame, its corners mitred.
+  // A square moulding around a square: a frame with mitred corners.
   const Mesh frame = sweep({{0, 0}, {1, 0}, {1, 1}, {0, 1}},
                            {{0, 0, 0}, {0, 4, 0}, {4, 4, 0}, {4, 0, 0}}, Vector3d::UnitZ(), true);
   EXPECT_EQ(closedness_error(frame), "");
@@ -138,13 +138,13 @@ TEST(PlanCurve, MitresCornersAndKeepsRadius) {
   EXPECT_TRUE(plan.is_corner(2.0 + side));
   EXPECT_FALSE(plan.is_corner(2.0 + side + 1.0));
   EXPECT_NEAR(plan.point(2.0 + side + 1.0, 0.25).norm(), 10.25, 1e-12);
-  // Every quarter is the first one, turned.
+  // Each quarter is the first one, rotated.
   const Vector2d quarter = plan.point(3.0 + plan.length() / 4, 0.1);
   EXPECT_NEAR((quarter - Vector2d(-plan.point(3.0, 0.1).y(), plan.point(3.0, 0.1).x())).norm(), 0,
               1e-9);
 }
 
-/// A rectangular tower 4 x 2 x 3 with one opening sunk into its face to +x.
+/// Returns the volume of a rectangular tower of 4 x 2 x 3 with one opening in its +x face.
 double volume_with(Opening opening, Joint joint = {}) {
   const PlanCurve plan = PlanCurve::rectangle(4, 2);
   Wall wall{plan, 0, 3, {}, {opening}, joint};
@@ -168,15 +168,15 @@ TEST(Wall, RemovesVolumeOfOpenings) {
   const double arch = 0.8 * 1.0 + pi * 0.4 * 0.4 / 2;
   EXPECT_NEAR(volume_with(arched(1.0, 0.8, 0.5, 1.9, 0.3, fine)), 24 - arch * 0.3, 1e-4);
 
-  // A niche: half a cylinder under a quarter of a ball.
+  // A niche: half a cylinder below a quarter of a ball.
   Opening niche = arched(1.0, 0.8, 0.5, 1.9, 0.4, fine);
   niche.back = Opening::Back::round;
   const double hollow = pi * 0.4 * 0.4 / 2 * 1.0 + pi * std::pow(0.4, 3) / 3;
   EXPECT_NEAR(volume_with(niche), 24 - hollow, 2e-3);
 }
 
-// A ring of blocks with V-joints: compared with its smooth cylinder it lacks the grooves, whose
-// section is half width times depth for a full V.
+// A ring of blocks with V-joints lacks the grooves of the smooth cylinder. The section of a full V
+// is half its width times its depth.
 TEST(Wall, RemovesVolumeOfJointGrooves) {
   const Fineness fine{1e-5};
   Wall wall{PlanCurve::circle(10), 0, 2, {}, {}, {0.03, 0.05}};
@@ -185,7 +185,7 @@ TEST(Wall, RemovesVolumeOfJointGrooves) {
   EXPECT_EQ(closedness_error(mesh), "");
   const double groove = 0.03 * 0.05;
   const double grooves = groove * (3 * 2 * pi * 10 + 4 * 20 * 0.5);
-  // Crossings are counted twice, and grooves lie up to 5 cm inside the circumference: 1 percent.
+  // Crossings are counted twice, and grooves are up to 5 cm inside the circumference: 1%.
   EXPECT_NEAR(signed_volume(mesh), pi * 100 * 2 - grooves, 0.012 * grooves + 0.003);
 }
 
@@ -198,11 +198,11 @@ TEST(CorinthianColumn, HasClosedSolidsAndHeightOfOrder) {
       leaves += part.name == "acanthus leaf";
       volutes += part.name == "capital volute";
     }
-    EXPECT_EQ(leaves, 16);  // two tiers of eight
+    EXPECT_EQ(leaves, 16);  // two tiers of eight leaves
     EXPECT_EQ(volutes, 4);
     const Eigen::AlignedBox3d box = bounding_box(join(parts));
-    EXPECT_NEAR(box.max().z(), 11.3, 0.021);  // the abacus reaches 2 cm into the architrave
-    EXPECT_NEAR(box.min().z(), 0.0, 0.031);   // and the plinth 3 cm into what it stands on
+    EXPECT_NEAR(box.max().z(), 11.3, 0.021);  // the abacus overlaps the architrave by 2 cm
+    EXPECT_NEAR(box.min().z(), 0.0, 0.031);   // the plinth overlaps its support by 3 cm
   }
 }
 

@@ -16,8 +16,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Newell's published extents. 3.434 is where the spout's curve turns back; its control points reach
-// to 3.525.
+// Newell's published extents. The spout's curve ends at 3.434; its control points extend to 3.525.
 TEST(Teapot, MatchesPublishedExtents) {
   const Eigen::AlignedBox3d box = bounding_box(teapot(16));
   EXPECT_NEAR(box.min().x(), -3.0, 1e-9);
@@ -28,12 +27,12 @@ TEST(Teapot, MatchesPublishedExtents) {
   EXPECT_NEAR(box.max().z(), 3.15, 1e-9);
 }
 
-// 32 patches of 16 x 16 cells are 16,384 triangles; the knob's and the bottom's poles, where one
-// side of a patch is a point, collapse 16 for each of their 8 patches.
+// 32 patches of 16 x 16 cells have 16,384 triangles. At the poles of the knob and the bottom, one
+// side of a patch is a point. There, 16 triangles collapse in each of 8 patches.
 TEST(Teapot, MergesPatchesAndRemovesCollapsedTriangles) {
   const geometry::Mesh mesh = teapot(16);
   EXPECT_EQ(mesh.triangles.size(), 32U * 16 * 16 * 2 - 8 * 16);
-  // Welded: no two vertices are at one place, none is left over.
+  // Merged vertices: no two have the same position, and all are used.
   std::set<std::array<double, 3>> positions;
   for (const Vector3d& v : mesh.vertices) {
     positions.insert({std::round(1e7 * v.x()), std::round(1e7 * v.y()), std::round(1e7 * v.z())});
@@ -45,7 +44,7 @@ TEST(Teapot, MergesPatchesAndRemovesCollapsedTriangles) {
 }
 
 TEST(Teapot, ConvergesToSmoothSurfaceUnderRefinement) {
-  // The error of chords falls with the square of their length.
+  // The chord error decreases with the square of the chord length.
   const double coarse = surface_area(teapot(8)), middle = surface_area(teapot(16)),
                fine = surface_area(teapot(32));
   EXPECT_NEAR((middle - coarse) / (fine - middle), 4.0, 0.3);
@@ -53,7 +52,7 @@ TEST(Teapot, ConvergesToSmoothSurfaceUnderRefinement) {
 
 TEST(Teapot, FacesOutward) {
   const Scene scene(teapot(16));
-  // Level rays at the body and the lid from all sides, and one at the knob from above.
+  // Level rays at the body and the lid from all sides, and a ray at the knob from above.
   for (const double z : {0.3, 1.0, 2.0, 2.6}) {
     for (const Vector3d& from : {Vector3d(9, 9, z), Vector3d(-9, 9, z), Vector3d(0.1, -9, z)}) {
       const Vector3d direction = Vector3d(0, 0, z) - from;

@@ -28,7 +28,8 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 using geometry::Mesh;
 
-/// Rays that have something to decide: at corners, along edges, across, from inside a plane.
+/// Returns rays at decision boundaries: through corners, along edges, in the plane of triangles,
+/// and from inside that plane.
 std::vector<SingleRay> hard_rays(const Mesh& mesh, std::mt19937_64& random, std::size_t count) {
   std::vector<SingleRay> rays;
   std::uniform_int_distribution<std::size_t> any(1, mesh.triangles.size() - 1);
@@ -44,7 +45,7 @@ std::vector<SingleRay> hard_rays(const Mesh& mesh, std::mt19937_64& random, std:
     rays.push_back(ray(away, inside - away));
     rays.push_back(ray(away, a - away));
     rays.push_back(ray(away, edge - away));
-    rays.push_back(ray(inside, away));                    // begins on the triangle
+    rays.push_back(ray(inside, away));                    // starts on the triangle
     rays.push_back(ray(a + 3.0F * (a - b), b - a));       // along an edge
     rays.push_back(ray(inside + 2.0F * (b - c), c - b));  // in the triangle's plane
     Vector3f along_axis = Vector3f::Zero();
@@ -54,8 +55,8 @@ std::vector<SingleRay> hard_rays(const Mesh& mesh, std::mt19937_64& random, std:
   return rays;
 }
 
-// The nearest hit is that over all triangles, each asked alone, of equal distances that with the
-// smallest number: no tree and no order of visits changes it, bit for bit.
+// The nearest hit equals the nearest of all triangles tested one by one. Among equal distances, the
+// smallest index wins. Neither the tree nor the order of visits changes it, bit for bit.
 TEST(RayKernels, MatchNearestHitOfAllSingleTriangles) {
   std::mt19937_64 random(1);
   const Mesh mesh = random_soup(random, 150);
@@ -84,7 +85,7 @@ TEST(RayKernels, MatchNearestHitOfAllSingleTriangles) {
     if (hit.distance < 0.0F) continue;
     ++hits;
     ASSERT_EQ(hit.triangle, expected);
-    // The reach counts, and that to the last bit.
+    // The maximum distance is exact to the last bit.
     EXPECT_EQ(cast(all, asked, nearest).distance, nearest);
     EXPECT_LT(cast(all, asked, std::nextafter(nearest, -1.0F)).distance, 0.0F);
     EXPECT_TRUE(ray_kernels().is_blocked(all.target(), asked, nearest));
@@ -94,7 +95,7 @@ TEST(RayKernels, MatchNearestHitOfAllSingleTriangles) {
   EXPECT_GT(ties, 50);
 }
 
-// Each ray alone and in packets with any others, on every instruction set: bit for bit.
+// Single rays and packets with any other rays are bitwise equal on every instruction set.
 TEST(RayKernels, MatchSingleRaysInPacketsOnAllInstructionSets) {
   std::mt19937_64 random(2);
   const Mesh mesh = random_soup(random, 3000);
@@ -121,7 +122,7 @@ TEST(RayKernels, MatchSingleRaysInPacketsOnAllInstructionSets) {
       ray_kernels().cast(triangles.target(), packet, RayPacket::all_lanes, infinity);
       ray_kernels().cast(triangles.target(), some, lanes, infinity);
       ray_kernels().cast_tile_distances(triangles.target(), &distances, 1, infinity);
-      // A reach that some of the hits are beyond.
+      // A maximum distance that excludes some of the hits.
       constexpr float reach = 0.5F;
       const std::uint32_t blocked = ray_kernels().blocked(triangles.target(), packet, lanes, reach);
       for (int lane = 0; lane < RayPacket::width; ++lane) {
@@ -149,9 +150,9 @@ std::int64_t volume(const std::array<std::int64_t, 3>& a, const std::array<std::
          a[2] * (b[0] * c[1] - b[1] * c[0]);
 }
 
-// Exact oracle: with whole coordinates the volumes that tell on which side of an edge a ray passes
-// are whole numbers. Where none is zero the answer is certain, as the shear is off by some 1e-6 of
-// the coordinates and edges and rays that do not meet are farther than that apart.
+// Exact reference: with integer coordinates, the volumes that decide on which side of an edge a ray
+// passes are integers. If none is zero, the result is certain. The error of the shear is about 1e-6
+// of the coordinates, less than the distance between edges and rays that miss.
 TEST(RayKernels, MatchExactIntegerArithmetic) {
   std::mt19937_64 random(3);
   std::uniform_int_distribution<std::int64_t> coordinate(-20, 20);
@@ -182,7 +183,7 @@ TEST(RayKernels, MatchExactIntegerArithmetic) {
     const bool is_through = (u > 0) == (v > 0) && (v > 0) == (w > 0);
     const double distance =
         is_through ? static_cast<double>(volume(a, b, c)) / static_cast<double>(u + v + w) : -1.0;
-    if (is_through && distance == 0.0) continue;  // begins in the triangle's plane
+    if (is_through && distance == 0.0) continue;  // starts in the plane of the triangle
     ASSERT_EQ(met.distance >= 0.0F, is_through && distance > 0.0);
     if (met.distance < 0.0F) {
       ++misses;
@@ -199,8 +200,8 @@ TEST(RayKernels, MatchExactIntegerArithmetic) {
   EXPECT_GT(misses, 20'000);
 }
 
-/// Triangles around a hub, in no plane but so flat that they surround it for all who look down on
-/// it, some of them very thin.
+/// Returns triangles around a hub that are not coplanar, but flat enough to surround it for all
+/// rays from above. Some are very thin.
 Mesh random_fan(std::mt19937_64& random, int sides) {
   Mesh mesh{{random_point(random, 1.0F).cast<double>()}, {}};
   std::uniform_real_distribution<double> rise(-0.03, 0.03), radius(0.3, 2.0), chance(0.0, 1.0);
@@ -222,7 +223,7 @@ Mesh random_fan(std::mt19937_64& random, int sides) {
   return mesh;
 }
 
-// A closed ring of triangles around a vertex leaves no gap, however the rays round.
+// A closed ring of triangles around a vertex has no gap, for any rounding of the rays.
 TEST(RayKernels, HaveNoGapAtHubOfFan) {
   std::mt19937_64 random(4);
   std::uniform_int_distribution<int> sides(3, 12);
@@ -236,7 +237,7 @@ TEST(RayKernels, HaveNoGapAtHubOfFan) {
       EXPECT_GE(cast(fan, ray(from, hub - from)).distance, 0.0F);
       const Vector3f aside = hub + 1e-7F * random_point(random, 1.0F);
       EXPECT_GE(cast(fan, ray(from, aside - from)).distance, 0.0F);
-      // A little way along a spoke there are triangles on both sides.
+      // Close to the hub along a spoke, there are triangles on both sides.
       const Vector3f rim = mesh.vertices[1 + j % (mesh.vertices.size() - 1)].cast<float>();
       const Vector3f on_spoke = hub + 0.1F * along(random) * (rim - hub);
       EXPECT_GE(cast(fan, ray(from, on_spoke - from)).distance, 0.0F);
@@ -244,8 +245,8 @@ TEST(RayKernels, HaveNoGapAtHubOfFan) {
   }
 }
 
-// A rough sheet far from the origin, where coordinates are coarse, from where all of it is seen:
-// rays at its vertices and at points of its edges and diagonals all meet it.
+// A rough sheet far from the origin, where coordinates are coarse, is completely visible. All rays
+// at its vertices and at points on its edges and diagonals hit it.
 TEST(RayKernels, HaveNoGapInRoughSheet) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> height(-0.01, 0.01);
@@ -286,7 +287,7 @@ TEST(RayKernels, HaveNoGapInRoughSheet) {
   }
 }
 
-// Two squares in one plane, the later one in front by its number only.
+// Two coplanar squares. The ray hits the triangle with the smaller index.
 TEST(RayKernels, ReturnSmallestIndexOfEquallyNearTriangles) {
   Mesh mesh = square({0, 0, 3}, {0, 0, 1}, 2.0);
   geometry::append(mesh, square({0.5, 0.5, 3}, {0, 0, 1}, 2.0));

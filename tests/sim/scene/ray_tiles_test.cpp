@@ -14,9 +14,9 @@ namespace {
 
 using Eigen::Vector3f;
 
-/// Packets of the rays of a small image, four by four pixels each, from a place, along an axis or
-/// askew. `width` is that of the image in its rays' depth: in narrow ones all directions have the
-/// same signs.
+/// Returns packets of 4 x 4 pixels for a small image from a position, along an axis or in a random
+/// direction. `width` is the image width at depth 1. In narrow images all directions have the same
+/// signs.
 std::vector<RayPacket> tile(std::mt19937_64& random, std::size_t count, float width) {
   const Vector3f origin = random_point(random, 9.0F);
   const Vector3f ahead = random_point(random, 1.0F);
@@ -37,8 +37,8 @@ std::vector<RayPacket> tile(std::mt19937_64& random, std::size_t count, float wi
   return packets;
 }
 
-// Packets that go down the tree together, few and many, wide and narrow, among large and small
-// triangles: each ray meets what it meets alone, bit for bit.
+// Packets that traverse the tree together: few and many, wide and narrow, with large and small
+// triangles. Each ray gives bitwise the same hit as alone.
 TEST(RayKernels, MatchSingleRaysInTiles) {
   std::mt19937_64 random(7);
   int hits = 0;

@@ -32,7 +32,7 @@ RenderOptions small_image() {
   return options;
 }
 
-/// A file of the test's own that goes with it.
+/// Temporary file that is removed with the object.
 class TemporaryFile {
  public:
   explicit TemporaryFile(const std::string& name)
@@ -44,11 +44,11 @@ class TemporaryFile {
   std::filesystem::path path_;
 };
 
-/// Which pixels of a view are not those of the bare sky, with one sample in each.
+/// Returns the pixels that differ from the sky, with one sample for each.
 std::vector<bool> covered(const geometry::Mesh& mesh, const RenderView& view,
                           RenderOptions options) {
   options.samples_per_side = 1;
-  // One far, tiny triangle behind the viewer: a scene must not be empty.
+  // A distant, tiny triangle behind the viewer, because a scene must not be empty.
   const Eigen::Vector3d behind = view.view.position - 100.0 * view.view.direction;
   const geometry::Mesh speck{
       {behind, behind + Eigen::Vector3d(1e-3, 0, 0), behind + Eigen::Vector3d(0, 1e-3, 1e-3)},
@@ -62,8 +62,8 @@ std::vector<bool> covered(const geometry::Mesh& mesh, const RenderView& view,
   return result;
 }
 
-// From distance d a unit ball fills a cone with tan = 1 / sqrt(d^2 - 1); around the optical axis
-// its outline is a circle of that many focal lengths.
+// From distance d, a unit ball fills a cone with tan = 1 / sqrt(d^2 - 1). Around the optical axis
+// its outline is a circle with this radius in focal lengths.
 TEST(Render, HasAnalyticAreaOfSphere) {
   const RenderOptions options = small_image();
   const double fov = 0.6, distance = 5.0;
@@ -71,8 +71,9 @@ TEST(Render, HasAnalyticAreaOfSphere) {
   const std::vector<bool> pixels = covered(unit_ball(), view, options);
   const double focal = 0.5 * options.width / std::tan(0.5 * fov);
   const double radius = focal / std::sqrt(distance * distance - 1.0);
-  // Each pixel's one sample is spread evenly over it, so that the count is unbiased; its variance
-  // is that of some 4/pi pixels a unit of outline, 1/6 each. Five sigma.
+  // The sample of each pixel is distributed uniformly over it, so the count is unbiased. Its
+  // variance is that of about 4/pi pixels for each unit of the outline, 1/6 each. The tolerance is
+  // five sigma.
   const double sigma = std::sqrt(4 / pi * 2 * pi * radius / 6);
   const auto count = static_cast<double>(std::count(pixels.begin(), pixels.end(), true));
   EXPECT_NEAR(count, pi * radius * radius, 5 * sigma);
@@ -111,7 +112,7 @@ TEST(Render, ShowsWholeSceneInStandardViews) {
     RenderOptions options = small_image();
     options.width = static_cast<int>(100 * aspect);
     const std::vector<RenderView> views = standard_views(unit_ball(), aspect);
-    for (int i = 0; i < 3; ++i) {  // the fourth is a detail
+    for (int i = 0; i < 3; ++i) {  // the fourth is a detail view
       const std::vector<bool> pixels = covered(unit_ball(), views[i], options);
       int inner = 0, edge = 0;
       for (int row = 0; row < options.height; ++row) {
@@ -122,7 +123,7 @@ TEST(Render, ShowsWholeSceneInStandardViews) {
         }
       }
       EXPECT_EQ(edge, 0);
-      // The ball is as large as it can be: more than half of the largest circle.
+      // The ball has nearly the maximum size: more than half of the largest circle.
       const double max = 0.5 * std::min(options.width, options.height);
       EXPECT_GT(inner, 0.5 * pi * max * max);
     }

@@ -35,7 +35,7 @@ TEST(Scene, HitsNearerFaceOfCube) {
   EXPECT_FALSE(scene.first_hit({-5, 2.3, 3.1}, {-1, 0, 0}));
 }
 
-// The distance counts in lengths of the direction, and so does its limit.
+// The distance and its limit are in multiples of the direction's length.
 TEST(Scene, MeasuresDistanceInLengthsOfDirection) {
   const Scene scene(cube({0, 0, 0}, 2.0), 1);
   for (const double length : {1e-6, 0.5, 3.0, 1e6}) {
@@ -47,14 +47,15 @@ TEST(Scene, MeasuresDistanceInLengthsOfDirection) {
   }
 }
 
-// Closed form: t = -b - sqrt(b^2 - c). Chords lie inside the sphere, so a ray from outside goes on
-// by at most the sagitta over the cosine of the incidence.
+// Closed form: t = -b - sqrt(b^2 - c). Chords are inside the sphere. A ray from outside therefore
+// travels further by at most the sagitta over the cosine of the incidence.
 TEST(Scene, MatchesClosedFormRangesToSphere) {
   const Vector3d centre(3, -2, 1);
   const double radius = 2.0;
   const int splits = 6;
   const Scene scene(sphere(centre, radius, splits), 1);
-  // The longest edge is near a face's centre, 1.73 times the equator's 90 degrees / 2^splits.
+  // The longest edge is near the centre of a face, 1.73 times the 90 degrees / 2^splits at the
+  // equator.
   const double edge_angle = 1.75 * 0.5 * std::numbers::pi / (1 << splits);
   const double sagitta = radius * (1.0 - std::cos(edge_angle / std::sqrt(3.0)));
   std::mt19937_64 random(1);
@@ -66,7 +67,7 @@ TEST(Scene, MatchesClosedFormRangesToSphere) {
     const double c = (origin - centre).squaredNorm() - radius * radius;
     const double distance = -b - std::sqrt(b * b - c);
     const double cosine = -direction.dot(origin + distance * direction - centre) / radius;
-    if (cosine < 0.3) continue;  // towards the silhouette the bound below is not valid
+    if (cosine < 0.3) continue;  // the bound below is invalid near the silhouette
     const auto hit = scene.first_hit(origin, direction);
     ASSERT_TRUE(hit);
     EXPECT_GT(hit->distance, distance - 1e-5);  // single precision at 10 m
@@ -85,7 +86,7 @@ TEST(Scene, DetectsBlockedSegments) {
   EXPECT_FALSE(scene.is_blocked({-5, 0, 0}, {-5, 0, 0}));
 }
 
-// A square hole of 0.2 m in a wall: exactly the rays that pass it reach the wall behind.
+// A square hole of 0.2 m in a wall: exactly the rays through the hole reach the wall behind.
 TEST(Scene, PassesOnlyRaysInsideHole) {
   geometry::Mesh mesh;
   for (const auto& [y, z] : {std::pair{-1.1, 0.0}, {1.1, 0.0}, {0.0, -1.1}, {0.0, 1.1}}) {
@@ -95,7 +96,7 @@ TEST(Scene, PassesOnlyRaysInsideHole) {
   const Scene scene(mesh, 1);
   for (int row = -20; row <= 20; ++row) {
     for (int column = -20; column <= 20; ++column) {
-      const double y = 0.0101 * column, z = 0.0103 * row;  // no ray meets the rim
+      const double y = 0.0101 * column, z = 0.0103 * row;  // no ray hits the rim
       const auto hit = scene.first_hit({0, 0, 0}, Vector3d(5, y, z));
       ASSERT_TRUE(hit);
       const bool is_open = std::abs(y) < 0.1 && std::abs(z) < 0.1;
@@ -104,7 +105,8 @@ TEST(Scene, PassesOnlyRaysInsideHole) {
   }
 }
 
-// Every ray must meet something within `reach` times the way to its target, alone and in packets.
+// Checks that each ray hits something within `reach` times the distance to its target, alone and in
+// packets.
 void expect_no_leaks(const Scene& scene, const Vector3d& origin,
                      const std::vector<Vector3d>& targets) {
   constexpr float reach = 1.0F + 1e-4F;
@@ -126,8 +128,8 @@ void expect_no_leaks(const Scene& scene, const Vector3d& origin,
   EXPECT_EQ(packet_leaks, 0) << "packets";
 }
 
-// Every ray aimed at a vertex of a closed surface, or at a point of an edge, must meet it there or
-// before, seen from inside and from outside.
+// Each ray at a vertex or edge point of a closed surface must hit it there or before, from inside
+// and from outside.
 TEST(Scene, HasNoLeaksAtVerticesAndEdges) {
   const geometry::Mesh mesh = sphere({4, 5, 6}, 3.0, 5);
   const Scene scene(mesh, 1);
@@ -142,7 +144,7 @@ TEST(Scene, HasNoLeaksAtVerticesAndEdges) {
     expect_no_leaks(scene, inside, targets);
   }
   for (const Vector3d& outside : {Vector3d(9, 5, 6), Vector3d(-3, 20, 31)}) {
-    // The far side's targets are hidden, and rays past the silhouette may go by in rounding.
+    // Targets on the far side are hidden. Rays next to the silhouette may miss because of rounding.
     std::vector<Vector3d> facing;
     std::copy_if(
         targets.begin(), targets.end(), std::back_inserter(facing), [&](const Vector3d& t) {
@@ -153,7 +155,7 @@ TEST(Scene, HasNoLeaksAtVerticesAndEdges) {
   }
 }
 
-// A scene in UTM coordinates, where single precision has steps of half a metre.
+// A scene in UTM coordinates, where single precision has steps of 0.5 m.
 TEST(Scene, KeepsRangesFarFromOrigin) {
   const Vector3d far(474'500.0, 5'474'500.0, 120.0);
   const Scene here(sphere({0, 0, 0}, 20.0, 4), 1), there(sphere(far, 20.0, 4), 1);
@@ -172,7 +174,7 @@ Eigen::Isometry3d make_pose(const Vector3d& position, double heading) {
   return Eigen::Translation3d(position) * Eigen::AngleAxisd(heading, Vector3d::UnitZ());
 }
 
-/// Three spheres and a cube under them, as copies and as one mesh.
+/// Three spheres and a cube below them, as copies and as one mesh.
 struct Copies {
   geometry::Mesh ball = sphere({0.5, 0, 2}, 1.5, 4), base = cube({0, 0, -1}, 2.0);
   std::vector<Eigen::Isometry3d> poses = {make_pose({0, 0, 0}, 0.3), make_pose({20, -7, 1}, 2.0),
@@ -194,8 +196,8 @@ struct Copies {
   }
 };
 
-// Twin: the same surfaces as a single mesh. Single precision at 40 m leaves 4e-6 m, more where a
-// ray grazes; along edges either triangle may be the one that is met.
+// Reference: the same surfaces in a single mesh. Single precision at 40 m has an error of 4e-6 m,
+// and more for grazing rays. At edges either triangle may be hit.
 TEST(Scene, MatchesSingleMeshForCopies) {
   const Copies copies;
   const geometry::Mesh mesh = copies.flattened();
@@ -209,7 +211,7 @@ TEST(Scene, MatchesSingleMeshForCopies) {
     const auto hit = scene.first_hit(origin, target - origin);
     const auto expected = reference.first_hit(origin, target - origin);
     if (expected.has_value() != hit.has_value()) {
-      ++other_triangles;  // past a silhouette
+      ++other_triangles;  // near a silhouette
       continue;
     }
     if (!hit) continue;
@@ -240,7 +242,7 @@ TEST(Scene, MatchesSingleSightLinesInBatches) {
     const Vector3d far = 20.0 * random_direction(random);
     for (std::size_t i = 0; i < count; ++i) {
       const Vector3d near = 1.2 * Vector3d{uniform(random), uniform(random), uniform(random)};
-      // Side by side and as long, converging, and of no length.
+      // Parallel lines of equal length, converging lines, and lines of zero length.
       sight_lines.push_back({i % 5 == 4 ? near : i % 2 == 0 ? near + far : far, near});
     }
     const std::uint32_t answer = scene.blocked(sight_lines);
@@ -272,7 +274,7 @@ TEST(Scene, HasNoLeaksAtVerticesAndEdgesOfCopies) {
   }
 }
 
-// 131,072 triangles take some ten megabytes; two hundred times, they would take two gigabytes.
+// 131,072 triangles take about 10 MB. Two hundred copies would take 2 GB.
 TEST(Scene, SharesMemoryAmongCopies) {
   const auto resident_bytes = [] {
     std::size_t pages = 0, resident = 0;

@@ -1,4 +1,4 @@
-// Measurements whose answer is a formula, beyond those of the single sensors' tests.
+// Measurements with closed-form results, in addition to the tests of the individual sensors.
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -35,7 +35,8 @@ std::vector<Vector3d> random_directions(int count, std::uint64_t seed) {
   return directions;
 }
 
-/// The mantle of an upright cylinder round the z axis, vertices on it, facing outward.
+/// Returns the lateral surface of an upright cylinder around the z axis, with its vertices on the
+/// cylinder, facing outward.
 geometry::Mesh cylinder(double radius, double half_height, int sides) {
   geometry::Mesh mesh;
   for (int i = 0; i < sides; ++i) {
@@ -52,8 +53,9 @@ geometry::Mesh cylinder(double radius, double half_height, int sides) {
   return mesh;
 }
 
-// |o + t d| = r across the axis. From outside a tessellation lies behind the true surface, by at
-// most its sagitta r (1 - cos(pi / n)) over the cosine of incidence; from inside before it.
+// |o + t d| = r across the axis. From outside, the tessellated surface is behind the true one, by
+// at most the sagitta r (1 - cos(pi / n)) over the cosine of the incidence. From inside it is in
+// front.
 TEST(ClosedForm, MatchesRangesToCylinder) {
   constexpr double radius = 5.0;
   constexpr int sides = 360;
@@ -71,13 +73,13 @@ TEST(ClosedForm, MatchesRangesToCylinder) {
       const double range = (c > 0.0 ? -b - std::sqrt(root) : -b + std::sqrt(root)) / a;
       const Vector3d point = origin + range * direction;
       const double cosine = std::abs(direction.head<2>().dot(point.head<2>())) / radius;
-      if (cosine < 0.1 ||  // the facets' normals are up to half a degree off: 9 % there
+      if (cosine < 0.1 ||  // facet normals deviate by up to half a degree: 9% there
           std::abs(point.z()) > 9.0)
         continue;
       const auto hit = scene.first_hit(origin, direction);
       ASSERT_TRUE(hit);
       const double longer = c > 0.0 ? hit->distance - range : range - hit->distance;
-      const double rounding = 1e-5 / cosine;  // single precision of triangles 20 m long
+      const double rounding = 1e-5 / cosine;  // single precision for triangles 20 m long
       EXPECT_GE(longer, -rounding);
       EXPECT_LE(longer, sagitta / cosine * 1.1 + rounding);
       from_outside += c > 0.0 ? 1 : 0;
@@ -86,8 +88,8 @@ TEST(ClosedForm, MatchesRangesToCylinder) {
   EXPECT_GT(from_outside, 200);
 }
 
-// Seen from inside a box, the range is the least of those to three planes; into edges and corners
-// as well, where two or three are equal. All are exact to single precision.
+// Inside a box, the range is the minimum of three plane distances. This includes edges and corners,
+// where two or three are equal. All ranges are exact to single precision.
 TEST(ClosedForm, MatchesRangesInsideBox) {
   const Scene scene(cube({1, 2, 3}, 8.0), 1);
   const Vector3d origin(0.5, 1.0, 4.0);
@@ -109,7 +111,7 @@ TEST(ClosedForm, MatchesRangesInsideBox) {
   }
 }
 
-// Rays of no order, some of which miss: one at a time or in packets, bit for bit.
+// Rays in random order, some of which miss: single rays and packets are bitwise equal.
 TEST(ClosedForm, MatchesSingleRaysAndPackets) {
   const geometry::Mesh ball = sphere({3, 0, 0}, 2.0, 6);
   const Scene scene(ball, 1);
@@ -140,10 +142,10 @@ TEST(ClosedForm, MatchesSingleRaysAndPackets) {
   EXPECT_LT(hits, 4000);
 }
 
-// A beam of full angle gamma on a plane tilted by theta: the ranges inside the footprint spread by
-// sigma = gamma R / 4 tan(theta), of a Gaussian beam. Seven rays, the outer six at the 1/e^2
-// radius with weight e^-2, have the variance (gamma R tan(theta) / 2)^2 3 e^-2 / (1 + 6 e^-2):
-// 0.947 of the Gaussian's sigma. The pulse is so short that every ray is an echo.
+// A beam with full angle gamma hits a plane tilted by theta. The ranges in the footprint of a
+// Gaussian beam have a spread of sigma = gamma R / 4 tan(theta). Seven rays, with the outer six at
+// the 1/e^2 radius and weight e^-2, have the variance (gamma R tan(theta) / 2)^2 3 e^-2 / (1 + 6
+// e^-2): 0.947 of the Gaussian sigma. The pulse is so short that each ray gives a separate echo.
 TEST(ClosedForm, MatchesEchoSpreadOnTiltedPlane) {
   constexpr double range = 80.0, gamma = 0.002;
   LidarConfig config;
@@ -163,7 +165,8 @@ TEST(ClosedForm, MatchesEchoSpreadOnTiltedPlane) {
     double weight = 0.0, mean = 0.0, square_mean = 0.0;
     for (std::size_t i = 0; i < returns.size(); ++i) {
       const double energy = returns.intensities[i];
-      // Where the ray met the plane: points are reported along the beam's axis.
+      // Reconstructs the position where the ray hit the plane. Points are reported along the beam's
+      // axis.
       const double measured = (returns.origin + returns.true_points[i].cast<double>()).norm();
       weight += energy;
       mean += energy * measured;
@@ -173,15 +176,16 @@ TEST(ClosedForm, MatchesEchoSpreadOnTiltedPlane) {
     const double spread = std::sqrt(square_mean / weight - (mean - range) * (mean - range));
     const double exact = 0.5 * gamma * range * std::tan(theta) *
                          std::sqrt(3 * std::exp(-2.0) / (1 + 6 * std::exp(-2.0)));
-    // The beam's far side is farther than its near side is near: second order in gamma.
+    // Second order in gamma: the far side of the footprint is farther from the axis than the near
+    // side.
     EXPECT_NEAR(spread, exact, 0.01 * exact) << theta;
     EXPECT_NEAR(exact, 0.947 * 0.25 * gamma * range * std::tan(theta), 1e-3 * exact);
   }
 }
 
-// A line scanner looking down: along the track lines are v / (lines per second) apart, across it
-// shots are h dtheta / cos^2(theta) apart, and the mean density is the share of shots inside the
-// field of view over the area they sweep.
+// A line scanner looks straight down. Along the track, lines are v / (lines per second) apart.
+// Across it, pulses are h dtheta / cos^2(theta) apart. The mean density is the fraction of pulses
+// inside the field of view over the area that they sweep.
 TEST(ClosedForm, MatchesSpacingAndDensityOfLineScanner) {
   constexpr double height = 60.0, speed = 8.0, field = 80 * degree;
   LidarConfig config;
@@ -189,7 +193,8 @@ TEST(ClosedForm, MatchesSpacingAndDensityOfLineScanner) {
   config.rotation_rate = 50.0;
   config.field_of_view = field;
   config.max_range = 500.0;
-  // The sensor's axis of rotation along the flight, its x axis, the middle of its field, down.
+  // The rotation axis points in flight direction. The x axis, the middle of the field of view,
+  // points down.
   Isometry3d mount = Isometry3d::Identity();
   mount.linear().col(0) = -Vector3d::UnitZ();
   mount.linear().col(1) = Vector3d::UnitY();
@@ -211,7 +216,7 @@ TEST(ClosedForm, MatchesSpacingAndDensityOfLineScanner) {
     if (returns.times[i] - returns.times[i - 1] > 1.5 * config.firing_period) continue;
     const double theta = 0.5 * std::abs(returns.scan_angles[i] + returns.scan_angles[i - 1]);
     const double expected = height * step / (std::cos(theta) * std::cos(theta));
-    // The formula is the derivative; over a step of 0.45 degrees it is off by a few 1e-5.
+    // The formula is the derivative. Over a step of 0.45 degrees its error is a few 1e-5.
     ASSERT_NEAR(std::abs(after.y() - before.y()), expected, 2e-4 * expected + 4e-5);
     if (before.y() < 0 && after.y() >= 0) nadirs.push_back(after.x());
   }
@@ -223,10 +228,11 @@ TEST(ClosedForm, MatchesSpacingAndDensityOfLineScanner) {
   const double area = speed * duration * 2 * height * std::tan(field / 2);
   const double density = static_cast<double>(returns.size()) / area;
   const double expected = share / config.firing_period / (speed * 2 * height * std::tan(field / 2));
-  EXPECT_NEAR(density, expected, 0.01 * expected);  // a turn has 800 shots, 178 inside: +-1
+  // 800 pulses per revolution, 178 +- 1 inside the field of view.
+  EXPECT_NEAR(density, expected, 0.01 * expected);
 }
 
-/// Four units in the last place of a single-precision number of that size.
+/// Returns four units in the last place of a single-precision number of this magnitude.
 double four_ulp(double size) {
   const auto single = static_cast<float>(size);
   return 4.0 * static_cast<double>(std::nextafter(single, 2.0F * single) - single);
@@ -242,9 +248,9 @@ DepthCamera exact_camera() {
                       .stereo = {}});
 }
 
-// n . p = c for every return, turned and tilted as the sensor is. What is left is the rounding of
-// a coordinate of 100 m, of the direction, and of the distance; and that of the plane's own
-// corners, 350 m from its middle.
+// n . p = c for each return, with a rotated and tilted sensor. The remaining error is the rounding
+// of a coordinate of 100 m, of the direction and distance, and of the plane's corners, 350 m from
+// its centre.
 TEST(ClosedForm, MatchesPointsOnTiltedPlane) {
   const Vector3d normal = Vector3d(-1.0, 0.3, 0.2).normalized(), middle(100, 5, -3);
   const Scene scene(square(middle, normal, 500.0), 1);
@@ -259,7 +265,7 @@ TEST(ClosedForm, MatchesPointsOnTiltedPlane) {
   }
 }
 
-// Straight down, all depths are the height, though ranges grow as one over the cosine.
+// Straight down, all depths equal the height, although ranges grow with 1 / cosine.
 TEST(ClosedForm, MatchesDepthOfNadirView) {
   constexpr double height = 80.0;
   const Scene scene(square({0, 0, 0}, {0, 0, 1}, 1000.0), 1);
@@ -276,8 +282,8 @@ TEST(ClosedForm, MatchesDepthOfNadirView) {
   }
 }
 
-// From inside, a sphere of triangles is never farther than the sphere, and nearer by the sagitta
-// over the cosine of the incidence at most.
+// From inside, a tessellated sphere is never farther than the sphere. It is closer by at most the
+// sagitta over the cosine of the incidence.
 TEST(ClosedForm, MatchesRangesInsideSphere) {
   constexpr double radius = 20.0;
   constexpr int splits = 5;
@@ -296,8 +302,9 @@ TEST(ClosedForm, MatchesRangesInsideSphere) {
   }
 }
 
-// A depth image has the noise of its points, once: sigma along the axis, where a wall is faced
-// squarely. Four standard deviations of the estimate from N pixels; steps of 0.1 mm add nothing.
+// A depth image contains the noise of its points exactly once: sigma along the axis for a frontal
+// wall. The tolerance is four standard deviations of the estimate from N pixels. Steps of 0.1 mm
+// are negligible.
 TEST(ClosedForm, MatchesNoiseOfDepthImage) {
   constexpr double sigma = 0.01, wall = 6.0, unit = 1e-4;
   const Scene scene(square({wall, 0, 0}, {-1, 0, 0}, 100.0), 1);

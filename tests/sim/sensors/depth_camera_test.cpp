@@ -24,7 +24,8 @@ using testing::HasSubstr;
 
 constexpr double degree = std::numbers::pi / 180.0;
 
-// Neither 101 nor 67 is a multiple of a packet, tile or block.
+// Returns a camera without noise. Neither 101 nor 67 is a multiple of the size of a packet, tile or
+// block.
 DepthCameraConfig exact_config(int width = 101, int height = 67) {
   return {.camera = {.width = width,
                      .height = height,
@@ -35,7 +36,7 @@ DepthCameraConfig exact_config(int width = 101, int height = 67) {
           .stereo = {}};
 }
 
-// Rolled and pitched, so that no symmetry hides a mistake.
+// Returns a pose with roll and pitch, so that symmetry cannot hide errors.
 Isometry3d tilted_pose(const Vector3d& position = {0.5, -0.3, 0.2}) {
   Isometry3d pose = geometry::camera_pose({position, Vector3d(1.0, 0.2, -0.1).normalized()});
   pose.rotate(Eigen::AngleAxisd(0.3, Vector3d::UnitZ()));
@@ -87,14 +88,14 @@ TEST(DepthCamera, MatchesClosedFormRangesToSphere) {
     const double c = (pose.translation() - centre).squaredNorm() - 9.0;
     const double expected = -b - std::sqrt(std::max(0.0, b * b - c));
     const double cosine = -direction.dot(measured - centre) / 3.0;
-    if (cosine < 0.3) continue;  // the silhouette of the mesh is not the sphere's
+    if (cosine < 0.3) continue;  // the silhouette of the mesh differs from that of the sphere
     EXPECT_NEAR((measured - pose.translation()).norm(), expected, 1e-4 * expected);
     ++compared;
   }
   EXPECT_GT(compared, 400U);
 }
 
-// Every return is in the middle of its own pixel, and no pixel that should return is left out.
+// Each return is in the centre of its own pixel, and no pixel with a surface is missing.
 TEST(DepthCamera, ReturnsPointsThatProjectToTheirPixels) {
   const Scene scene(sphere({10, 1, -1}, 4.0, 5), 1);
   const DepthCamera camera(exact_config());
@@ -123,7 +124,8 @@ TEST(DepthCamera, AppliesRangeLimitsAlongOpticalAxis) {
   config.camera.max_range = 6.0;
   const DepthCamera camera(config);
   const geometry::View view{{0, 0, 0}, {1, 0, 0}};
-  // Facing walls: all pixels have the wall's depth, though corners are 1.2 times as far.
+  // For a frontal wall, all pixels have the wall's depth, although the range at the corners is 1.2
+  // times the depth.
   const auto returns_from_wall_at = [&](double depth) {
     const Scene scene(square({depth, 0, 0}, {-1, 0, 0}, 100.0), 1);
     return camera.scan(scene, view, 0, 1).points.size();
@@ -143,7 +145,7 @@ TEST(DepthCamera, OccludesSurfacesBehindTooNearSurface) {
   EXPECT_TRUE(DepthCamera(config).scan(scene, {{0, 0, 0}, {1, 0, 0}}, 0, 1).points.empty());
 }
 
-// On a floor seen from height 2, the angle of incidence at distance d is atan(d / 2).
+// On a floor seen from a height of 2 m, the incidence angle at distance d is atan(d / 2).
 TEST(DepthCamera, ReturnsNoPointsBeyondMaxIncidence) {
   DepthCameraConfig config = exact_config();
   config.max_incidence = 70 * degree;
@@ -163,11 +165,11 @@ TEST(DepthCamera, ReturnsNoPointsBeyondMaxIncidence) {
 
 struct Statistics {
   Vector3d mean = Vector3d::Zero(), variance = Vector3d::Zero();
-  double skew = 0.0, excess_kurtosis = 0.0;  // of all axes together
+  double skew = 0.0, excess_kurtosis = 0.0;  // of all axes combined
   std::size_t count = 0;
 };
 
-// Of the differences between a noisy scan and the exact one, in `axes` (columns).
+// Computes statistics of the differences between a noisy and an exact scan, with `axes` as columns.
 template <typename Difference>
 Statistics statistics(const Scan& noisy, const Scan& exact, double sigma, Difference difference) {
   Statistics result;
@@ -200,8 +202,8 @@ class NoisyCamera : public testing::Test {
   }
 };
 
-// Bounds are four standard deviations of each statistic over N = 256,000 points: sigma / sqrt(N)
-// of a mean, sigma^2 sqrt(2/N) of a variance, sqrt(15/3N) and sqrt(96/3N) of the higher moments of
+// Bounds are four standard deviations of each statistic for N = 256,000 points: sigma / sqrt(N) of
+// a mean, sigma^2 sqrt(2/N) of a variance, sqrt(15/3N) and sqrt(96/3N) of the higher moments for
 // three axes.
 TEST_F(NoisyCamera, HasIsotropicNoiseWithSigmaOnEachAxis) {
   const Scan noisy = camera(NoiseDirection::isotropic).scan(scene, pose, 3, 1);
@@ -242,9 +244,9 @@ TEST_F(NoisyCamera, HasNoiseThatDependsOnFrameAndSeed) {
   EXPECT_NE(camera(NoiseDirection::isotropic, 6).scan(scene, pose, 3, 1).points, scan.points);
 }
 
-// A wall that faces the camera at depth z has disparity f B / z: errors of s px in it, and only
-// multiples of the step. Four standard deviations of the variance of 256,000 pixels are 1.1 %; the
-// square of the step over 12 is added.
+// A frontal wall at depth z has the disparity f B / z, with an error of s px and multiples of the
+// step. For 256,000 pixels, four standard deviations of the variance are 1.1%. The square of the
+// step over 12 is added.
 TEST(DepthCamera, HasStereoErrorsOfDisparity) {
   DepthCameraConfig config = exact_config(640, 400);
   config.stereo = {.focal_length_px = 424.0,
@@ -269,7 +271,7 @@ TEST(DepthCamera, HasStereoErrorsOfDisparity) {
   }
 }
 
-// Also with rows and tiles without any return, which change where each band's points go.
+// Includes rows and tiles without returns, which change the output offsets of the bands.
 TEST(DepthCamera, DoesNotDependOnThreadCount) {
   const Scene scene(sphere({10, 1, -1}, 2.0, 5), 2);
   DepthCameraConfig config = exact_config(501, 333);
@@ -294,7 +296,8 @@ TEST(DepthCamera, IsIndependentOfReusedScan) {
   EXPECT_EQ(scan.pixels, expected.pixels);
 }
 
-// The kernel behind the points, on every instruction set, with and without gaps in the row.
+// Tests the kernel that computes the points on each instruction set, with and without gaps in the
+// row.
 TEST(DepthCamera, ReturnsSamePointsOnAllInstructionSets) {
   constexpr std::size_t width = 333;
   std::vector<float> depth(width), column(width);
@@ -331,7 +334,7 @@ TEST(DepthCamera, ReturnsSamePointsOnAllInstructionSets) {
   }
 }
 
-// Known answers: 1200 / tan 30 and 875 / tan 20; 424 / tan 34.7 and 240 / tan 21.25.
+// Known values: 1200 / tan 30 and 875 / tan 20; 424 / tan 34.7 and 240 / tan 21.25.
 TEST(DepthCamera, HasPublishedGeometryInPresets) {
   const DepthCamera high(high_resolution()), small(d435());
   EXPECT_NEAR(high.camera().focal_length_px().x(), 2078.46, 0.01);

@@ -11,14 +11,14 @@ namespace skycap::sim {
 namespace {
 
 constexpr Sensitivity sees_all = {};
-const Beam beam = {.rings = 2, .pulse_length = 5e-9, .max_returns = 5};  // resolves 0.75 m
+const Beam beam = {.rings = 2, .pulse_length = 5e-9, .max_returns = 5};  // range resolution 0.75 m
 
 std::vector<RayHit> two_surfaces(float near_range, float far_range, float near_share) {
   return {{far_range, 1.0F, 0.5F, 1.0F - near_share, 7}, {near_range, 1.0F, 0.5F, near_share, 3}};
 }
 
-// Check 13 of the specification: resolved surfaces give echoes at the true ranges with their
-// shares.
+// Check 13 of the specification: resolved surfaces give echoes at the true ranges with the right
+// energy fractions.
 TEST(Echoes, AreSeparateBeyondHalfPulseLength) {
   std::vector<RayHit> hits = two_surfaces(10.0F, 10.8F, 0.3F);
   const std::vector<Echo> echoes = form_echoes(hits, sees_all, beam);
@@ -35,11 +35,11 @@ TEST(Echoes, MergeAtEnergyWeightedRangeWithinHalfPulseLength) {
   const std::vector<Echo> echoes = form_echoes(hits, sees_all, beam);
   ASSERT_EQ(echoes.size(), 1U);
   EXPECT_FLOAT_EQ(echoes[0].range, 0.3F * 10.0F + 0.7F * 10.5F);
-  EXPECT_EQ(echoes[0].triangle, 7U);  // of the stronger part
+  EXPECT_EQ(echoes[0].triangle, 7U);  // triangle of the stronger part
 }
 
 TEST(Echoes, AreSelectedBySensorPolicy) {
-  // Ranges 1..4 with energies 2, 4, 1, 3.
+  // Ranges 1 to 4 with energies 2, 4, 1, 3.
   const auto chosen = [](EchoChoice choice, int max) {
     std::vector<RayHit> hits = {
         {1, 1, 1, 0.2F, 0}, {2, 1, 1, 0.4F, 0}, {3, 1, 1, 0.1F, 0}, {4, 1, 1, 0.3F, 0}};
@@ -54,14 +54,15 @@ TEST(Echoes, AreSelectedBySensorPolicy) {
   using testing::ElementsAre;
   EXPECT_THAT(chosen(EchoChoice::first, 2), ElementsAre(1, 2));
   EXPECT_THAT(chosen(EchoChoice::last, 2), ElementsAre(3, 4));
-  EXPECT_THAT(chosen(EchoChoice::strongest, 1), ElementsAre(1));  // power falls with the square
+  // Power decreases with the square of the range.
+  EXPECT_THAT(chosen(EchoChoice::strongest, 1), ElementsAre(1));
   EXPECT_THAT(chosen(EchoChoice::strongest, 2), ElementsAre(1, 2));
   EXPECT_THAT(chosen(EchoChoice::strongest_and_last, 2), ElementsAre(1, 4));
   EXPECT_THAT(chosen(EchoChoice::strongest_and_last, 1), ElementsAre(1));
   EXPECT_THAT(chosen(EchoChoice::first, 9), ElementsAre(1, 2, 3, 4));
 }
 
-// Check 11: R_max = R_ref sqrt(rho cos / rho_ref). Ouster OS1: 40 m at 10 % gives 113 m at 80 %.
+// Check 11: R_max = R_ref sqrt(rho cos / rho_ref). Ouster OS1: 40 m at 10% gives 113 m at 80%.
 TEST(ReceivedPower, IsOneAtRangeOfLidarEquation) {
   const Sensitivity os1{.reference_range = 40.0, .reference_reflectance = 0.1};
   EXPECT_NEAR(received_power({113.137F, 1.0F, 0.8F, 1.0F, 0}, os1), 1.0, 1e-5);
@@ -69,7 +70,7 @@ TEST(ReceivedPower, IsOneAtRangeOfLidarEquation) {
   EXPECT_LT(received_power({113.0F, 0.9F, 0.8F, 1.0F, 0}, os1), 1.0F);
   EXPECT_EQ(received_power({1e6F, 1.0F, 0.8F, 1.0F, 0}, sees_all),
             std::numeric_limits<float>::infinity());
-  // Air that takes half of the light on 20 m out and back.
+  // Air that absorbs half of the light over 20 m in both directions.
   const Sensitivity hazy{40.0, 0.1, std::log(2.0) / 40.0};
   EXPECT_NEAR(received_power({20.0F, 1.0F, 0.1F, 1.0F, 0}, hazy), 2.0, 1e-5);
 }
@@ -100,8 +101,8 @@ TEST(BeamSamples, MatchGaussianProfileUpToRadius) {
   }
   EXPECT_NEAR(total, 1.0, 1e-6);
   EXPECT_NEAR(mean, 0.0, 1e-6);
-  // A Gaussian's 1/e^2 radius is two standard deviations; cut off there, three quarters of the
-  // variance of 1/4 are left, of which the two rings show somewhat more.
+  // The 1/e^2 radius of a Gaussian is two standard deviations. Truncated there, the variance of 1/4
+  // is reduced to three quarters. The two rings give slightly more.
   EXPECT_GT(variance, 0.17);
   EXPECT_LT(variance, 0.25);
   EXPECT_EQ(beam_samples(0).size(), 1U);

@@ -1,4 +1,4 @@
-// What sensors measure where their rays meet glass and mirrors.
+// Measurements of glass and mirrors.
 
 #include <cmath>
 #include <numbers>
@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A square of that surface before a matt one.
+/// A square of this surface type in front of a matt one.
 class SurfaceBefore {
  public:
   SurfaceBefore(Surface surface, const geometry::Mesh& front, const geometry::Mesh& back)
@@ -76,14 +76,15 @@ TEST(Glass, GivesNoReturnToLidar) {
 }
 
 TEST(Mirror, ShowsMirroredWallStraightAhead) {
-  // A mirror at 45 degrees 10 m ahead, and a wall 7 m to its left: its image is 17 m ahead.
+  // A mirror at 45 degrees 10 m ahead and a wall 7 m to its left: the image of the wall is 17 m
+  // ahead.
   const geometry::Mesh glass = square({10, 0, 0}, Vector3d(-1, 1, 0).normalized(), 40.0);
   const geometry::Mesh wall = square({10, 7, 0}, {0, -1, 0}, 60.0);
   const SurfaceBefore before(Surface::mirror, glass, wall);
   const geometry::Scan scan = capture(before.scene());
   EXPECT_EQ(scan.points.size(), 101U * 67U);
   for (const auto& point : scan.points) EXPECT_NEAR(point.x(), 17.0F, 1e-3F);
-  EXPECT_TRUE(capture(before.scene(), 16.9).points.empty());  // the whole way counts
+  EXPECT_TRUE(capture(before.scene(), 16.9).points.empty());  // the total path length is limited
 }
 
 TEST(Mirror, GivesNoReturnBetweenFacingMirrors) {
@@ -97,7 +98,7 @@ TEST(Mirror, GivesNoReturnBetweenFacingMirrors) {
 }
 
 TEST(Mirror, AppliesIncidenceLimitToMirroredSurface) {
-  // The wall's image is met head-on, though the mirror is met at 45 degrees.
+  // The incidence angle on the wall is 0, although that on the mirror is 45 degrees.
   const geometry::Mesh glass = square({10, 0, 0}, Vector3d(-1, 1, 0).normalized(), 40.0);
   const geometry::Mesh wall = square({10, 7, 0}, {0, -1, 0}, 60.0);
   const Scene scene = SurfaceBefore(Surface::mirror, glass, wall).scene();

@@ -27,7 +27,7 @@ Trajectory standing(const Vector3d& position = {0, 0, 0}, double duration = 1.0)
       {{0.0, position, Quaterniond::Identity()}, {duration, position, Quaterniond::Identity()}});
 }
 
-// 16 lasers, 500 firings a turn at 20 turns a second.
+// Returns a scanner with 16 lasers, 500 firings per revolution and 20 revolutions per second.
 LidarConfig spinner(int channels = 16) {
   LidarConfig config;
   config.firing_period = 1e-4;
@@ -49,7 +49,7 @@ LidarReturns measure_standing(const LidarConfig& config, const Scene& scene,
   return Lidar(config).measure(scene, {trajectory, trajectory}, {0, firings});
 }
 
-// Single precision of triangles that reach 280 m has steps of 3e-5 m.
+// For triangles that extend to 280 m, single precision has steps of 3e-5 m.
 TEST(Lidar, MeasuresTiltedWallInEveryDirection) {
   const Vector3d normal = Vector3d(-1.0, 0.3, 0.2).normalized();
   const Scene scene(square({10, 0, 0}, normal, 400.0), 1);
@@ -66,8 +66,8 @@ TEST(Lidar, MeasuresTiltedWallInEveryDirection) {
   EXPECT_EQ(channels.size(), 16U);
 }
 
-// Sampling in closed form: channels / firing period shots a second, all of which return inside a
-// sphere. OS1-128 at 2048 columns and 10 Hz: 2,621,440 a second; here a 64th of it.
+// Pulse rate: channels / firing period. Inside a sphere all pulses return. OS1-128 with 2048
+// columns at 10 Hz: 2,621,440 per second; here 1/64 of it.
 TEST(Lidar, ReturnsOnePointPerPulse) {
   LidarConfig config = spinner(128);
   for (int i = 0; i < 128; ++i)
@@ -86,7 +86,7 @@ TEST(Lidar, ReturnsOnePointPerPulse) {
 
 class MovingLidar : public testing::Test {
  protected:
-  // 10 m/s along x while turning by 30 degrees a second, past a wall at y = 20.
+  // 10 m/s along x with a yaw rate of 30 degrees per second, along a wall at y = 20.
   static constexpr double speed = 10.0, yaw_rate = 30 * degree;
   const Scene scene{square({0, 20, 0}, {0, -1, 0}, 400.0), 1};
   static StampedPose pose_at(double time) {
@@ -97,7 +97,8 @@ class MovingLidar : public testing::Test {
   const LidarReturns returns = Lidar(spinner()).measure(scene, {trajectory, trajectory}, {0, 1000});
 };
 
-// Every shot against the closed form: its own time, pose and direction, met with the wall.
+// Compares each pulse with the closed form: the intersection of the ray with the wall, from the
+// pulse's own time, pose and direction.
 TEST_F(MovingLidar, HasOwnTimeAndPoseForEveryPulse) {
   ASSERT_GT(returns.size(), 5000U);
   const LidarConfig config = spinner();
@@ -113,14 +114,15 @@ TEST_F(MovingLidar, HasOwnTimeAndPoseForEveryPulse) {
     const Vector3d expected = pose.translation() + 20.0 / direction.y() * direction;
     const Vector3d measured = world(returns, returns.points[i]);
     const double range = (expected - pose.translation()).norm();
-    // Across the ray by single precision of its direction, along it more where it grazes the wall.
+    // The error across the ray is the single-precision error of its direction. Along the ray it is
+    // larger at grazing incidence.
     EXPECT_LT((measured - expected).norm(), 1e-6 * range * range / 20.0 + 2e-5);
     EXPECT_NEAR(measured.y(), 20.0, 5e-5);
   }
 }
 
-// Seen from the pose at the scan's start, points are displaced by exactly what the platform did
-// since: v t and the turn. Undoing it with the reported times restores the wall.
+// In the frame of the scan's start, points are displaced by the platform motion since then: v t and
+// the rotation. Correcting it with the reported times restores the wall.
 TEST_F(MovingLidar, ReportsTimesThatAllowMotionCorrection) {
   ASSERT_GT(returns.size(), 0U);
   for (std::size_t i = 0; i < returns.size(); i += 7) {
@@ -155,7 +157,8 @@ TEST(Lidar, MatchesWholeScanInParts) {
   EXPECT_EQ(parts.times, whole.times);
 }
 
-// The last angle at which a floor returns is where R^2 / cos reaches R_ref^2 rho / rho_ref.
+// The largest incidence angle at which a floor returns is where R^2 / cos reaches R_ref^2 rho /
+// rho_ref.
 TEST(Lidar, LosesGrazingReturnsAccordingToLidarEquation) {
   const double height = 4.0, reference = 20.0, reflectance = 0.3;
   const geometry::Mesh floor = square({0, 0, -height}, {0, 0, 1}, 4000.0);
@@ -172,10 +175,11 @@ TEST(Lidar, LosesGrazingReturnsAccordingToLidarEquation) {
     last = std::max(last, world(returns, point).norm());
   }
   EXPECT_LE(last, farthest + 1e-4);
-  EXPECT_GT(last, farthest - 0.2);  // channels are 0.05 degrees or 0.15 m apart there
+  EXPECT_GT(last, farthest - 0.2);  // there, channels are 0.05 degrees or 0.15 m apart
 }
 
-// A hole of 1 cm in a wall, a beam of 13.5 cm: one ray falls through, the beam meets the wall too.
+// A hole of 1 cm in a wall and a beam of 13.5 cm: a single ray passes through the hole, but the
+// beam also hits the wall.
 TEST(Lidar, ReturnsWallAndHoleForWideBeam) {
   geometry::Mesh mesh;
   for (const auto& [y, z] : {std::pair{-1.005, 0.0}, {1.005, 0.0}, {0.0, -1.005}, {0.0, 1.005}}) {
@@ -197,13 +201,13 @@ TEST(Lidar, ReturnsWallAndHoleForWideBeam) {
   EXPECT_NEAR(world(wide, wide.points[1]).x(), 20.0, 1e-5);
   EXPECT_THAT(wide.return_numbers, testing::ElementsAre(1, 2));
   EXPECT_THAT(wide.number_of_returns, testing::ElementsAre(2, 2));
-  // Only the axis of 19 rays passes the hole, with its share of the Gaussian.
+  // Of 19 rays, only the axis passes through the hole, with its weight of the Gaussian.
   const double axis = 1.0 / (1.0 + 6.0 * std::exp(-0.5) + 12.0 * std::exp(-2.0));
   EXPECT_NEAR(wide.intensities[1] / (wide.intensities[0] + wide.intensities[1]), axis, 1e-3);
 }
 
-// gamma R / 2 across and gamma R / (2 cos theta) along the slope: half of the beam beyond an edge
-// that is moved through the footprint.
+// gamma R / 2 across the slope and gamma R / (2 cos theta) along it. When an edge moves through the
+// footprint, half of the beam is beyond it at the centre.
 TEST(Lidar, HasFootprintOfBeamDivergence) {
   LidarConfig config;
   config.rotation_rate = 0.0;
@@ -214,7 +218,8 @@ TEST(Lidar, HasFootprintOfBeamDivergence) {
     const LidarReturns returns = measure_standing(config, scene, {0, 0, 0}, 1);
     return returns.size() == 0 ? 0.0 : returns.intensities[0] / Scene::default_reflectance;
   };
-  // The square's left edge is at y = shift - 10; the footprint's radii are 0.1 and 0.25 m.
+  // The left edge of the square is at y = shift - 10. The radii of the footprint are 0.1 and 0.25
+  // m.
   EXPECT_NEAR(share_beyond({0, 10.0, 0}), 0.5, 0.08);
   EXPECT_NEAR(share_beyond({0, 9.89, 0}), 1.0, 1e-3);
   EXPECT_EQ(share_beyond({0, 10.101, 0}), 0.0);
@@ -237,8 +242,8 @@ TEST(Lidar, ReturnsMultiplesOfRangeStep) {
   EXPECT_GT(numbers.size(), 15U) << "the noise of 5 steps spreads them";
 }
 
-// Range errors along the ray: the mean of each channel is its bias, the rest is the noise. Four
-// standard deviations of each statistic over N = 5000 firings.
+// Range errors along the ray: the mean of each channel is its bias, and the rest is noise. The
+// tolerance is four standard deviations for N = 5000 firings.
 TEST(Lidar, SeparatesChannelBiasFromPulseNoise) {
   LidarConfig config = spinner(64);
   for (int i = 0; i < 64; ++i) config.channels[i] = {.elevation = 0.3 * i * degree};
@@ -277,14 +282,15 @@ TEST(Lidar, HitsSameSurfacesWithNoise) {
   EXPECT_NE(noisy.points, exact.points);
 }
 
-// Straight down from height h: a roll of phi, believed to be zero, moves the point by h tan(phi).
+// From height h straight down, a roll of phi that is estimated as zero displaces the point by h
+// tan(phi).
 TEST(Lidar, DisplacesPointsByRollLeverArmAndBoresightErrors) {
   const double height = 40.0;
   const Scene scene(square({0, 0, 0}, {0, 0, 1}, 400.0), 1);
   LidarConfig config;
   config.rotation_rate = 0.0;
   const Lidar lidar(config);
-  // The sensor's x axis, along which it shoots, points down.
+  // The sensor's x axis, its firing direction, points down.
   Isometry3d down = Isometry3d::Identity();
   down.rotate(AngleAxisd(90 * degree, Vector3d::UnitY()));
   const Trajectory level = standing({0, 0, height});

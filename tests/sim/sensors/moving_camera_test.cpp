@@ -27,7 +27,7 @@ DepthCamera exact_camera() {
                       .stereo = {}});
 }
 
-/// At the origin, looking along x; its right is -y, its down -z.
+/// At the origin, looking along x. Image right is -y, and down is -z.
 const Isometry3d pose = geometry::camera_pose({Vector3d::Zero(), Vector3d::UnitX()});
 
 Scene wall_at(double x) { return Scene(square({x, 0, 0}, -Vector3d::UnitX(), 200.0), 1); }
@@ -58,7 +58,7 @@ TEST(MovingCamera, KeepsPointsWhenMovingAlongPlane) {
   }
 }
 
-// Flying at a wall, the first row is read while it is farther, the last one while it is nearer.
+// In flight towards a wall, the first row is read farther away than the last one.
 TEST(MovingCamera, ReadsEachRowAtItsPoseWithRollingShutter) {
   const Scene scene = wall_at(10.0);
   constexpr double speed = 5.0, readout = 0.02;
@@ -73,7 +73,7 @@ TEST(MovingCamera, ReadsEachRowAtItsPoseWithRollingShutter) {
   }
 }
 
-// Turning to the left while the rows are read shifts what they see to the right, more and more.
+// During a rotation to the left, what later rows see is shifted increasingly to the right.
 TEST(MovingCamera, SkewsImageWithRollingShutterWhenTurning) {
   const Scene scene(sphere({10, 0, 0}, 0.4, 4), 1);
   constexpr double rate = 2.0, readout = 0.05;
@@ -107,7 +107,8 @@ TEST(MovingCamera, DisplacesAllPointsByPoseError) {
   EXPECT_TRUE(scan.world_from_sensor.isApprox(pose));
 }
 
-// A pole before a wall: what moves over its edges during the exposure sees both, and is left out.
+// A pole in front of a wall: pixels that cross its edges during the exposure see both surfaces and
+// give no return.
 TEST(MovingCamera, GivesNoReturnForPixelsOnTwoSurfaces) {
   geometry::Mesh mesh = square({20, 0, 0}, -Vector3d::UnitX(), 200.0);
   const geometry::Mesh pole{{{10, -1, -50}, {10, 1, -50}, {10, 1, 50}, {10, -1, 50}},
@@ -117,7 +118,7 @@ TEST(MovingCamera, GivesNoReturnForPixelsOnTwoSurfaces) {
   const Scene scene(mesh, 1);
   const DepthCamera camera = exact_camera();
   const double focal = camera.camera().focal_length_px().x();
-  // The pole's edges move by so many pixels.
+  // Motion of the pole's edges [px].
   constexpr double blur_px = 6.0, exposure = 0.1;
   const double speed = blur_px / focal * 10.0 / exposure;
   const Scan scan = camera.scan(scene, pose,
@@ -140,7 +141,7 @@ TEST(MovingCamera, GivesNoReturnForPixelsThatMainlySeeSky) {
       .world_from_camera = pose, .velocity = {0.0, 10.0, 0.0}, .exposure = 0.1, .instants = 21};
   const auto standing = static_cast<double>(camera.scan(scene, pose, 0, 1).points.size());
   const auto moving = static_cast<double>(camera.scan(scene, pose, motion, 0).points.size());
-  EXPECT_NEAR(moving, standing, 0.05 * standing);  // what one edge loses the other gains
+  EXPECT_NEAR(moving, standing, 0.05 * standing);  // the loss at one edge is the gain at the other
 }
 
 TEST(MovingCamera, DoesNotDependOnThreadCount) {

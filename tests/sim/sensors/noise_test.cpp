@@ -37,8 +37,8 @@ double correlation(const std::vector<float>& a, const std::vector<float>& b, std
   return sum / static_cast<double>(a.size() - lag);
 }
 
-// The n-th moment of N normals scatters by sqrt(var(x^n) / N); var is 1, 2, 15, 96 for n = 1..4.
-// Each bound is four of these standard deviations.
+// The n-th moment of N normals has a standard deviation of sqrt(var(x^n) / N), where var is 1, 2,
+// 15, 96 for n = 1 to 4. Each bound is four standard deviations.
 TEST(Noise, HasMomentsOfStandardNormal) {
   const double unit = 4.0 / std::sqrt(static_cast<double>(count));
   for (const std::uint64_t seed : {0, 1, 2}) {
@@ -50,7 +50,7 @@ TEST(Noise, HasMomentsOfStandardNormal) {
   }
 }
 
-// Kolmogorov-Smirnov: sqrt(N) D exceeds 1.95 once in a thousand samples.
+// Kolmogorov-Smirnov: sqrt(N) D exceeds 1.95 in one of a thousand samples.
 TEST(Noise, HasDistributionOfStandardNormal) {
   std::vector<float> sample = normals(5, 0, 0);
   std::sort(sample.begin(), sample.end());
@@ -63,7 +63,7 @@ TEST(Noise, HasDistributionOfStandardNormal) {
   EXPECT_LT(largest * std::sqrt(static_cast<double>(count)), 1.95);
 }
 
-// Of a million normals 63 are beyond 4 sigma (Poisson, so 63 +- 4 * 8) and 0.6 beyond 5.
+// Of a million normals, 63 exceed 4 sigma (Poisson: 63 +- 4 * 8) and 0.6 exceed 5 sigma.
 TEST(Noise, HasTailsOfStandardNormal) {
   const std::vector<float> sample = normals(11, 0, 0);
   const auto beyond = [&](float limit) {
@@ -74,8 +74,8 @@ TEST(Noise, HasTailsOfStandardNormal) {
   EXPECT_LE(beyond(5.0F), 5);
 }
 
-// Independent normals correlate by less than 4 / sqrt(N) in 16,000 of 16,001 cases. Lags 16 and 32
-// are partners in Box and Muller's transform and neighbouring blocks; 2400 is the next image row.
+// Correlations of independent normals are below 4 / sqrt(N) in 16,000 of 16,001 cases. Lags 16 and
+// 32 are Box-Muller partners and neighbouring blocks; 2400 is the next image row.
 TEST(Noise, IsUncorrelatedAcrossLagsStreamsFramesAndSeeds) {
   const double limit = 4.0 / std::sqrt(static_cast<double>(count));
   const std::vector<float> sample = normals(1, 0, 1);
@@ -87,15 +87,16 @@ TEST(Noise, IsUncorrelatedAcrossLagsStreamsFramesAndSeeds) {
   EXPECT_NEAR(correlation(sample, normals(2, 0, 1)), 0.0, limit);
 }
 
-// Partners share their radius: their squares would correlate if the angle were not uniform.
+// Box-Muller partners share their radius. Their squares would correlate if the angle were not
+// uniform.
 TEST(Noise, HasUncorrelatedSquaresOfBoxMullerPartners) {
   std::vector<float> squares = normals(21, 0, 0);
   for (float& value : squares) value = (value * value - 1.0F) / std::sqrt(2.0F);
   EXPECT_NEAR(correlation(squares, squares, 16), 0.0,
-              8.0 / std::sqrt(static_cast<double>(count)));  // var(x^2 y^2 / 2) is 2 to 4
+              8.0 / std::sqrt(static_cast<double>(count)));  // var(x^2 y^2 / 2) is between 2 and 4
 }
 
-// A normal depends on key and index alone, not on where the array that it is asked in begins.
+// A normal depends only on key and index, not on the beginning of the requested array.
 TEST(Noise, DependsOnlyOnKeyAndIndex) {
   const NoiseKey key = noise_key(3, 1, 4);
   std::vector<float> whole(1000), part(777);
@@ -106,7 +107,7 @@ TEST(Noise, DependsOnlyOnKeyAndIndex) {
   }
 }
 
-// Bit for bit, on every instruction set of this processor and for every length of array.
+// Bitwise equal on each instruction set of this processor and for each array length.
 TEST(Noise, IsSameOnAllInstructionSets) {
   const NoiseKey key = noise_key(99, 2, 3);
   for (const std::size_t length : {1UL, 31UL, 32UL, 127UL, 128UL, 129UL, count}) {

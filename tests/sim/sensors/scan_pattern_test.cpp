@@ -16,7 +16,7 @@ using testing::HasSubstr;
 
 constexpr double degree = std::numbers::pi / 180.0;
 
-// Half a Velodyne: lasers at different elevations, delays and heights.
+// Returns half a Velodyne: lasers with different elevations, delays and heights.
 LidarConfig spinner() {
   LidarConfig config;
   config.firing_period = 55.296e-6;
@@ -35,7 +35,7 @@ Vector3d direction(const Pulses& pulses, std::size_t slot) {
   return {pulses.direction[0][slot], pulses.direction[1][slot], pulses.direction[2][slot]};
 }
 
-// The direction at any time in closed form; a late block shows that time does not wear out.
+// Closed-form direction at any time. A late block shows that precision does not decrease with time.
 TEST(ScanPattern, MatchesClosedFormRotation) {
   const LidarConfig config = spinner();
   const ScanPattern pattern(config);
@@ -73,7 +73,7 @@ TEST(ScanPattern, AssignsOneSlotPerPulse) {
   EXPECT_EQ(*slots.rbegin(), 32U * 8U - 1);
 }
 
-// Ouster's geometry: lasers on a circle that turns with the encoder.
+// Ouster's geometry: lasers on a circle that rotates with the encoder.
 TEST(ScanPattern, OffsetsLasersFromAxis) {
   LidarConfig config = spinner();
   config.radial_offset = 0.02767;
@@ -90,16 +90,16 @@ TEST(ScanPattern, OffsetsLasersFromAxis) {
   }
 }
 
-// A line scanner that sees 100 of 360 degrees: that share of its shots leaves it.
+// A line scanner with a field of view of 100 of 360 degrees emits this fraction of its pulses.
 TEST(ScanPattern, EmitsOnlyInsideFieldOfView) {
   LidarConfig config;
   config.firing_period = 1e-5;
-  config.rotation_rate = 100.0;  // 1000 shots a turn
+  config.rotation_rate = 100.0;  // 1000 pulses per revolution
   config.field_of_view = 100 * degree;
   const ScanPattern pattern(config);
   Pulses pulses;
   int emitted = 0;
-  for (std::uint64_t block = 0; block < 125; ++block) {  // 4 turns
+  for (std::uint64_t block = 0; block < 125; ++block) {  // 4 revolutions
     pattern.aim(block, pulses);
     for (std::size_t slot = 0; slot < pattern.slots(); ++slot) {
       emitted += pulses.is_emitted[slot];
@@ -107,12 +107,12 @@ TEST(ScanPattern, EmitsOnlyInsideFieldOfView) {
       ASSERT_EQ(pulses.is_emitted[slot] != 0, off <= 50 * degree + 1e-6);
     }
   }
-  EXPECT_NEAR(emitted, 4 * 1000 * 100.0 / 360.0, 4 * 2);  // up to two at the edges of a line
+  EXPECT_NEAR(emitted, 4 * 1000 * 100.0 / 360.0, 4 * 2);  // up to two pulses at the edges of a line
 }
 
 TEST(Refract, FollowsSnellsLawForOnePrism) {
   const double wedge = 12 * degree, index = 1.51;
-  // Square at the entry: the beam meets the inclined face at `wedge` from inside the glass.
+  // Perpendicular entry: inside the glass, the beam meets the inclined face at the angle `wedge`.
   const double expected = std::asin(index * std::sin(wedge)) - wedge;
   const std::vector<WedgePrism> prisms = {{wedge, index, 0.0, 0.0, false}};
   const Vector3d beam = refract(prisms, 0.0, Vector3d::UnitX());
@@ -120,7 +120,8 @@ TEST(Refract, FollowsSnellsLawForOnePrism) {
   EXPECT_NEAR(beam.norm(), 1.0, 1e-12);
 }
 
-// Small wedges: theta = (n - 1) (w1 exp(i a1) + w2 exp(i a2)), the paraxial formula of a rosette.
+// For small wedges: theta = (n - 1) (w1 exp(i a1) + w2 exp(i a2)), the paraxial formula of a
+// rosette.
 TEST(Refract, FollowsParaxialFormulaForThinPrisms) {
   const double index = 1.51, wedge = 0.2 * degree;
   const std::vector<WedgePrism> prisms = {{wedge, index, -77.7, 0.3, false},
@@ -133,24 +134,24 @@ TEST(Refract, FollowsParaxialFormulaForThinPrisms) {
       y -= (index - 1.0) * wedge * std::cos(angle);
       z -= (index - 1.0) * wedge * std::sin(angle);
     }
-    // The sign says where the thick side is; it is the same for both prisms.
+    // The sign depends on the position of the thick side. It is the same for both prisms.
     const double sign = beam.y() * y + beam.z() * z > 0.0 ? 1.0 : -1.0;
     EXPECT_NEAR(beam.y(), sign * y, 1e-3 * wedge);
     EXPECT_NEAR(beam.z(), sign * z, 1e-3 * wedge);
   }
 }
 
-// Livox Mid-70: two prisms of 29.7 degrees reach the edge of a 70.4 degree field when aligned.
+// Livox Mid-70: two aligned prisms of 29.7 degrees reach the edge of the 70.4 degree field of view.
 TEST(Refract, ReachesFieldOfViewOfMid70) {
   std::vector<WedgePrism> prisms = {{29.7 * degree, 1.51, 0.0, 0.0, false},
                                     {29.7 * degree, 1.51, 0.0, 0.0, true}};
   EXPECT_NEAR(std::acos(refract(prisms, 0.0, Vector3d::UnitX()).x()), 35.2 * degree, 0.1 * degree);
-  prisms[1].phase = std::numbers::pi;  // opposed, they cancel
+  prisms[1].phase = std::numbers::pi;  // in opposite directions they cancel
   EXPECT_NEAR(std::acos(refract(prisms, 0.0, Vector3d::UnitX()).x()), 0.0, 1e-6);
 }
 
-// The share of a grid over the field that has been hit grows, and the second half of a second is
-// not a repetition of the first.
+// The covered fraction of a grid over the field of view increases. The second half of a second does
+// not repeat the first.
 TEST(ScanPattern, CoversFieldIncreasinglyWithRosette) {
   LidarConfig config;
   config.firing_period = 1e-5;
@@ -171,7 +172,7 @@ TEST(ScanPattern, CoversFieldIncreasinglyWithRosette) {
     if ((block + 1) % 625 == 0) covered.push_back(cells.size());
   }
   const double all = std::numbers::pi * std::pow(100 * std::tan(35.2 * degree), 2);
-  EXPECT_GT(static_cast<double>(covered[0]), 0.3 * all);  // 20,000 shots on 15,600 cells
+  EXPECT_GT(static_cast<double>(covered[0]), 0.3 * all);  // 20,000 pulses on 15,600 cells
   for (std::size_t i = 1; i < covered.size(); ++i) EXPECT_GT(covered[i], covered[i - 1]) << i;
   EXPECT_GT(static_cast<double>(covered.back()), 0.9 * all);
 }

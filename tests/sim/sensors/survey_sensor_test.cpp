@@ -19,7 +19,8 @@ using Eigen::Vector3f;
 
 constexpr double degree = std::numbers::pi / 180.0;
 
-/// 40 lasers a degree apart, the lowest at -25 degrees, 1 degree between firings.
+/// Returns a scanner with 40 lasers 1 degree apart, the lowest at -25 degrees, and 1 degree between
+/// firings.
 LidarConfig scanner() {
   LidarConfig lidar;
   lidar.rotation_rate = 10.0;
@@ -29,7 +30,7 @@ LidarConfig scanner() {
   return lidar;
 }
 
-/// The walls of a room of 20 m, seen from inside.
+/// Returns the walls of a room of 20 m, seen from inside.
 geometry::Mesh room() {
   geometry::Mesh mesh;
   for (int i = 0; i < 8; ++i) {
@@ -59,7 +60,8 @@ TEST(SurveySensor, MeasuresAllAroundWithoutPixelsForStationaryScanner) {
   }
 }
 
-// The planner counts on what the forward camera would see: as many rays, in the same directions.
+// The planner assumes that the scanner has as many rays as the forward camera, in the same
+// directions.
 TEST(SurveySensor, MatchesScannerRaysInForwardCamera) {
   const Scene scene(room());
   const geometry::View view = geometry::look_at({1, 2, 3}, {9, 4, 1});
@@ -81,15 +83,15 @@ TEST(SurveySensor, MatchesScannerRaysInForwardCamera) {
     const Eigen::Vector2d off = (*pixel - camera.principal_point_px()).cwiseAbs();
     in_middle += off.x() < 0.125 * camera.width() && off.y() < 0.25 * camera.height() ? 1 : 0;
   }
-  // Lasers from -19.5 to 19.5 degrees about the axis, on cones where the image has lines.
+  // Lasers from -19.5 to 19.5 degrees around the axis form cones. Image rows form planes.
   EXPECT_NEAR(max_elevation, 20.0 * degree, 0.6 * degree);
   EXPECT_NEAR(min_elevation, -20.0 * degree, 0.6 * degree);
   const double pixels = static_cast<double>(camera.width()) * camera.height();
-  // An eighth of the image, where rays and pixels are equally dense but for the rounding of a
-  // quarter of some 40 rows and columns.
+  // An eighth of the image, where rays and pixels have the same density, except for rounding by a
+  // quarter of about 40 rows and columns.
   EXPECT_NEAR(in_middle, pixels / 8.0, 0.12 * pixels / 8.0);
-  // At azimuth a the image's upper edge is seen at the elevation atan(tan(20) cos(a)); rays are a
-  // degree apart either way. The lasers' cones, tilted by 5.5 degrees, are off that by some
+  // At azimuth a, the upper image edge has the elevation atan(tan(20) cos(a)). Rays are 1 degree
+  // apart in both directions. The cones of the lasers, tilted by 5.5 degrees, deviate by some
   // percent.
   double rays = 0.0;
   for (int a = -45; a < 45; ++a) {
@@ -110,7 +112,8 @@ TEST(SurveySensor, DependsOnSeedAndFrameButNotOnThreadCount) {
   EXPECT_EQ(scan.points.size(), sensor.scan(scene, view, 4, 1).points.size());
 }
 
-/// Its axis along the flight, and across it to the left.
+/// Returns a level mount with the rotation axis along the flight direction, or to the left across
+/// it.
 geometry::ScannerMount level_mount(double azimuth) {
   return scanner_mount(scanner(),
                        Eigen::Isometry3d(Eigen::AngleAxisd(azimuth, Vector3d::UnitZ()) *
@@ -130,21 +133,22 @@ TEST(MountedScanner, LooksLeftOfItsAxisForAnyHeading) {
                north.direction)
                   .norm(),
               1e-12);
-    // How steeply a view looks does not turn the nose.
+    // The pitch of a view does not change the heading.
     geometry::View steep = geometry::scanner_view(mount, north);
     steep.direction = (steep.direction - 5.0 * Vector3d::UnitZ()).normalized();
     EXPECT_LT((geometry::nose_view(mount, steep).direction - north.direction).norm(), 1e-12);
   }
 }
 
-// A scan in flight stands for the turns around it: all rays lie in the ring about the axis.
+// A scan in flight represents the surrounding revolutions: all rays are in the ring around the
+// axis.
 TEST(MountedScanner, SweepsRingOnceForEachRevolutionOfPeriod) {
   const Scene scene(room());
   SurveySensorOptions config;
   config.scanner = scanner();
   config.mount = level_mount(0.0);
   config.capture = Capture::moving;
-  config.frame_period = 0.5;  // five turns
+  config.frame_period = 0.5;  // five revolutions
   const SurveySensor sensor(config, 1);
   const geometry::View view = geometry::scanner_view(*config.mount, {{1, 2, 3}, {0.6, 0.8, 0}});
   const geometry::Scan scan = sensor.scan(scene, view, 0, 1);
@@ -155,12 +159,13 @@ TEST(MountedScanner, SweepsRingOnceForEachRevolutionOfPeriod) {
     const double sine = (point.cast<double>() - view.position).normalized().dot(axis);
     ahead = std::max(ahead, sine), behind = std::min(behind, sine);
   }
-  // Lasers from -25 to 14 degrees; turns begin up to 13 cm off, 7 m or more from the walls.
+  // Lasers from -25 to 14 degrees. Revolutions start up to 13 cm away from the scan position, at
+  // least 7 m from the walls.
   EXPECT_NEAR(std::asin(ahead), 14.0 * degree, 1.1 * degree);
   EXPECT_NEAR(std::asin(behind), -25.0 * degree, 1.1 * degree);
 }
 
-// The planner's camera promises nothing that the ring has not.
+// The planner's camera is within the ring.
 TEST(MountedScanner, HasSideCameraInsideScannedRing) {
   const geometry::Camera camera(side_camera(scanner()).camera);
   EXPECT_NEAR(camera.config().vertical_fov, 90.0 * degree, 1e-12);

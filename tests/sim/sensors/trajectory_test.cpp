@@ -34,7 +34,8 @@ TEST(Trajectory, HoldsPoseBeforeStartAndAfterEnd) {
   EXPECT_TRUE(trajectory.pose(9.0).isApprox(trajectory.pose(3.0)));
 }
 
-// A quaternion and its negative are the same attitude; the way between must stay the short one.
+// A quaternion and its negative are the same attitude. The interpolation must use the shorter
+// rotation.
 TEST(Trajectory, InterpolatesAlongShorterRotation) {
   Quaterniond negative = yaw(0.4);
   negative.coeffs() *= -1.0;
@@ -60,9 +61,9 @@ TEST(Trajectory, ReportsTheInvalidPose) {
               testing::HasSubstr("pose 0 has an attitude quaternion of zero length"));
 }
 
-// A Gauss-Markov process sampled every tau has correlation 1/e between neighbours; N = 40,000
-// samples with 1/e memory are as good as N (1 - 1/e^2) / (1 + 1/e^2) = 30,000 independent ones, so
-// four standard deviations of the variance are 4 sqrt(2 / 30,000) = 3.3 %.
+// A Gauss-Markov process sampled every tau has a correlation of 1/e between neighbours. N = 40,000
+// samples are equivalent to N (1 - 1/e^2) / (1 + 1/e^2) = 30,000 independent ones. Four standard
+// deviations of the variance are 4 sqrt(2 / 30,000) = 3.3%.
 TEST(EstimatedTrajectory, HasErrorsOfGivenSizeAndCorrelationTime) {
   std::vector<StampedPose> poses;
   for (int i = 0; i < 40'000; ++i) poses.push_back({5.0 * i, {1, 2, 3}, yaw(0.7)});

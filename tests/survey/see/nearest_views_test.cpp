@@ -37,7 +37,7 @@ TEST(NearestViews, MatchBruteForce) {
   EXPECT_EQ(nearer, 19);
 }
 
-// With one leaf around everything the octree has nothing to choose: the search is exact.
+// With all views in one leaf the octree has no choices, so the search is exact.
 TEST(ApproximatelyNearestView, IsExactWithinALeaf) {
   const auto positions = random_positions(50, 2);
   for (const auto& query : random_positions(20, 3)) {
@@ -46,8 +46,9 @@ TEST(ApproximatelyNearestView, IsExactWithinALeaf) {
   }
 }
 
-// The child whose centre is nearest is entered, though the other one holds the nearer view. The
-// root grows from [-0.5, 0.5] to [-0.5, 1.5] on each axis; its lower child has the centre 0.
+// The search enters the child with the nearest centre, although the other child contains the nearer
+// view. The root grows from [-0.5, 0.5] to [-0.5, 1.5] on each axis. The centre of its lower child
+// is 0.
 TEST(ApproximatelyNearestView, SearchesChildWithNearestCentre) {
   const std::vector<Vector3d> positions = {{0, 0, 0}, {0.55, 0, 0}};
   const Vector3d query(0.45, 0, 0);

@@ -19,7 +19,7 @@ geometry::PointGrid make_grid(const std::vector<Vector3f>& points, double radius
   return grid;
 }
 
-/// Points at z = `height`, 5 cm apart, 4 m wide.
+/// Returns points at z = `height`, 5 cm apart, on a square of 4 m.
 std::vector<Vector3f> wall(float height) {
   std::vector<Vector3f> points;
   for (float x = -2; x <= 2; x += 0.05F) {
@@ -28,7 +28,7 @@ std::vector<Vector3f> wall(float height) {
   return points;
 }
 
-// The definition: some sample zeta, zeta + r, ... up to psi has a point within r.
+// Definition: one of the samples zeta, zeta + r, ... up to psi has a point within r.
 TEST(OcclusionTest, MatchesDefinition) {
   const auto points = tests::random_points(400, 1.0, 11);
   const double radius = 0.05;
@@ -64,8 +64,8 @@ TEST(OcclusionTest, IgnoresPointsBehindSensor) {
   EXPECT_TRUE(test.is_occluded({0, 0, 0}, 0.0, {0, 0, 3.5}));
 }
 
-// Trap T7: a wall farther away than psi is not noticed, so a target behind a building counts as
-// visible. With psi = d it is.
+// Trap T7: a wall beyond psi is ignored, so a target behind a building counts as visible. With psi
+// = d it is hidden.
 TEST(OcclusionTest, IgnoresWallsBeyondSearchDistance) {
   const geometry::PointGrid grid = make_grid(wall(3.0F), 0.1);
   const Vector3d frontier(0, 0, 0), sensor(0, 0, 41);
@@ -84,7 +84,7 @@ TEST(OcclusionTest, ReachesFartherByOffsetInReleasedVariant) {
   EXPECT_TRUE(see::OcclusionTest(grid, config).is_occluded(frontier, 0.5, sensor));
 }
 
-// The frontier itself fills the balls at 0 and r; the first clear one is at 2r.
+// The frontier itself is in the balls at 0 and r. The first empty ball is at 2r.
 TEST(ClearOffset, IsFirstStepWithoutPoints) {
   const geometry::PointGrid grid = make_grid({{0, 0, 0}}, 0.125);  // exact in binary
   const see::OcclusionTest test(grid, {.radius = 0.125, .search_distance = 1.0});

@@ -22,7 +22,8 @@ using Eigen::Vector3d;
 using geometry::View;
 using testing::HasSubstr;
 
-/// A sixteenth of a D435's pixels; the density goes down alike, so distances stay as published.
+/// A D435 with a sixteenth of its pixels. The density is reduced by the same factor, so that
+/// distances remain the published ones.
 const geometry::Camera small_camera(geometry::CameraConfig{.width = 212, .height = 120});
 
 see::SeeConfig small_config() {
@@ -36,7 +37,7 @@ struct Outcome {
   bool ended = false;
 };
 
-/// Surveys spheres until the planner is done, at most `max_views` views.
+/// Surveys spheres until the planner has finished, with at most `max_views` views.
 Outcome survey(const see::SeeConfig& config, double sigma, std::size_t max_views = 200,
                const std::vector<tests::Sphere>& spheres = {{}}, std::uint64_t seed = 1) {
   see::SeePlanner planner(config, small_camera);
@@ -53,7 +54,8 @@ Outcome survey(const see::SeeConfig& config, double sigma, std::size_t max_views
   return run;
 }
 
-/// Share of 1,000 directions from the origin in which a sphere of radius 0.5 has a point nearby.
+/// Returns the fraction of 1,000 directions from the origin in which a sphere of radius 0.5 has a
+/// point nearby.
 double coverage(const std::vector<Eigen::Vector3f>& cloud, double distance) {
   int covered = 0;
   for (int i = 0; i < 1000; ++i) {
@@ -87,9 +89,8 @@ TEST(SeePlanner, SurveysNoisySphereAndEnds) {
   }
 }
 
-// Trap T1: it is the noise that makes frontiers. At the published settings clean data end the
-// survey of a sphere after a few views, rightly. A threshold fit for clean data surveys the sphere
-// whole.
+// Trap T1: noise creates frontiers. With the published settings and clean data, the survey of a
+// sphere correctly ends after a few views. A threshold for clean data surveys the whole sphere.
 TEST(SeePlanner, RequiresNoiseOrLargerThreshold) {
   const geometry::Camera d435(geometry::CameraConfig{});
   see::SeePlanner published(see::SeeConfig{}, d435);
@@ -106,7 +107,7 @@ TEST(SeePlanner, RequiresNoiseOrLargerThreshold) {
   EXPECT_GT(coverage(larger_threshold.cloud, 0.03), 0.99);
 }
 
-// Trap T2, and what the user is told.
+// Trap T2 and its error message.
 TEST(SeePlanner, RejectsParametersThatAdmitNoFrontier) {
   const auto error_message = [](const see::SeeConfig& config) -> std::string {
     try {
@@ -124,8 +125,8 @@ TEST(SeePlanner, RejectsParametersThatAdmitNoFrontier) {
   EXPECT_THAT(error_message({.density = NAN}), HasSubstr("density"));
 }
 
-// SEE flies to the nearest proposal. Refusing one view after the other lists them all, each time
-// the nearest of what is left, and without the frontier spacing there are as many as frontiers.
+// SEE selects the nearest proposal. Rejecting one view after another lists all of them in order of
+// distance. Without the frontier spacing, there is one for each frontier.
 TEST(SeePlanner, SelectsNearestViewWithoutOptimiserAndGraph) {
   see::SeeConfig config = small_config();
   config.optimise_views = config.visibility_graph = false;
@@ -137,19 +138,20 @@ TEST(SeePlanner, SelectsNearestViewWithoutOptimiserAndGraph) {
   double last = 0.0;
   for (; next; next = planner.next_alternative_view(), ++proposals) {
     const double distance = (next->position - start.position).norm();
-    EXPECT_GE(distance, last - 1e-8) << "proposal " << proposals;  // ties go by the first view
+    // The first view decides between equal distances.
+    EXPECT_GE(distance, last - 1e-8) << "proposal " << proposals;
     last = distance;
   }
   EXPECT_EQ(proposals, planner.last_step().frontiers);
   EXPECT_GT(proposals, 20U);
 }
 
-// The bar of the method: without optimiser and graph SEE++ is SEE, view for view.
+// Requirement: without optimiser and graph, SEE++ equals SEE, view by view.
 TEST(SeePlanner, EqualsSeeWithoutOptimiserAndGraph) {
   see::SeeConfig config = small_config();
   config.optimise_views = config.visibility_graph = false;
   const Outcome exact = survey(config, 0.02, 12);
-  config.occlusion_search_distance = 0.3;  // parameters of SEE++ alone change nothing
+  config.occlusion_search_distance = 0.3;  // parameters of SEE++ only have no effect
   config.visibility_update_limit = 3;
   config.still_occluded = see::StillOccluded::keep;
   const Outcome same = survey(config, 0.02, 12);
@@ -169,18 +171,18 @@ TEST(SeePlanner, IsDeterministic) {
   }
 }
 
-// Trap T6: every proposal is at the view distance from the surface, outside, looking in.
+// Trap T6: each proposal is outside at the view distance from the surface and looks at it.
 TEST(SeePlanner, ProposesViewsFromOutsideAtViewDistance) {
   const Outcome run = survey(small_config(), 0.02, 15);
   ASSERT_GT(run.views.size(), 1U);
   for (std::size_t i = 1; i < run.views.size(); ++i) {
     const Vector3d target = run.views[i].position + 1.98 * run.views[i].direction;
-    EXPECT_NEAR(target.norm(), 0.5, 0.15) << "view " << i;  // the frontier, in the noise
+    EXPECT_NEAR(target.norm(), 0.5, 0.15) << "view " << i;  // the frontier is within the noise
     EXPECT_GT(run.views[i].position.norm(), 1.4) << "view " << i;
   }
 }
 
-// Trap T9: the first scan must show something; a later empty one only costs the target.
+// Trap T9: the first scan must not be empty. A later empty scan only discards the target.
 TEST(SeePlanner, RejectsEmptyFirstScan) {
   see::SeePlanner planner(small_config(), small_camera);
   try {
@@ -205,7 +207,7 @@ TEST(SeePlanner, EndsWhenAllLaterScansAreEmpty) {
     nothing.world_from_sensor = geometry::camera_pose(*next);
     next = planner.next_view(nothing);
   }
-  EXPECT_FALSE(next);  // each empty scan gave its frontier up
+  EXPECT_FALSE(next);  // each empty scan discarded its frontier
 }
 
 TEST(SeePlanner, StopsWhilePlanningView) {
@@ -250,12 +252,13 @@ TEST(SeePlanner, ReobservesFromViewDistanceOrNearerOrHigherOrigin) {
   EXPECT_TRUE(is_at(again({7, 0, 8}, 9.0), {7, 0, 8}));
 }
 
-// What is put off comes back when nothing else is left, seen along the line that it was seen on.
+// Deferred frontiers are proposed again when nothing else is left, along the line of their
+// observation.
 TEST(SeePlanner, ProposesRejectedFrontiersAgainAlongTheirObservation) {
   see::SeeConfig config = small_config();
   config.still_occluded = see::StillOccluded::deferred;
   see::SeePlanner planner(config, small_camera);
-  const View first = geometry::look_at({2.4, 0.3, 0.2}, {0, 0, 0});  // nearer than d to some
+  const View first = geometry::look_at({2.4, 0.3, 0.2}, {0, 0, 0});  // closer than d to some points
   std::optional<View> next =
       planner.next_view(tests::scan_spheres({{}}, small_camera, first, 0.02));
   const std::size_t frontiers = planner.last_step().frontiers;
@@ -266,7 +269,7 @@ TEST(SeePlanner, ProposesRejectedFrontiersAgainAlongTheirObservation) {
   EXPECT_FALSE(next);
   ASSERT_GT(offered.size(), frontiers);
   for (std::size_t i = offered.size() - frontiers; i < offered.size(); ++i) {
-    // On the line from the first view to the frontier, and no farther away than that.
+    // On the line from the first view to the frontier, and not farther away than that view.
     const Vector3d to_view = offered[i].position - first.position;
     EXPECT_NEAR(to_view.cross(offered[i].direction).norm(), 0.0, 1e-6);
     EXPECT_GE(to_view.dot(offered[i].direction), -1e-6);
@@ -291,8 +294,8 @@ TEST(SeePlanner, KeepsViewsAboveMinHeight) {
   }
 }
 
-// Every reading of the paper that a mission file can choose plans the same sphere whole, by views
-// of its own.
+// Each interpretation of the paper that a mission file can select surveys the complete sphere, with
+// different views.
 TEST(SeePlanner, CompletesSurveyWithEveryAlternativeConfiguration) {
   const std::vector<std::pair<const char*, void (*)(see::SeeConfig&)>> alternatives = {
       {"frame_neighbours", [](see::SeeConfig& c) { c.frame_neighbours = 16; }},
@@ -331,7 +334,7 @@ TEST(SeePlanner, CompletesSurveyWithEveryAlternativeConfiguration) {
     const Outcome run = survey(config, 0.02);
     EXPECT_TRUE(run.ended) << name;
     EXPECT_GT(coverage(run.cloud, 0.03), 0.9) << name;
-    // What is put off is looked at when nothing else is left, long after this.
+    // Deferred frontiers are only observed when nothing else is left, long after these views.
     if (config.still_occluded == see::StillOccluded::deferred) continue;
     EXPECT_NE(collect_views(config), published) << name << " changes nothing";
   }

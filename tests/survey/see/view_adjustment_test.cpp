@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 
 const see::ViewPlacement two_metres{.distance = 2.0};
 
-/// On the plane z = 0, the surface at x < 0, first seen from (3, 0, 3).
+/// Returns a frontier on the plane z = 0 with the surface at x < 0, first observed from (3, 0, 3).
 see::Frontier edge_frontier() {
   see::Frontier frontier{.position = Vector3d::Zero(),
                          .observed_from = {3, 0, 3},
@@ -23,7 +23,7 @@ see::Frontier edge_frontier() {
   return frontier;
 }
 
-// Trap T6: the sensor stands on the free side and looks back at the frontier.
+// Trap T6: the sensor is on the free side and looks back at the frontier.
 TEST(PlaceView, HasViewDistanceAndLooksBack) {
   const geometry::View view = see::place_view({1, 1, 1}, {0, 0, 1}, two_metres);
   EXPECT_TRUE(view.position.isApprox(Vector3d(1, 1, 3)));
@@ -40,13 +40,14 @@ TEST(PlaceView, RisesToMinHeightKeepingAzimuthAndDistance) {
   EXPECT_TRUE(view.direction.isApprox(-view.position.normalized()));
   EXPECT_TRUE(
       see::place_view({0, 0, 0}, {0, 0, 1}, placement).position.isApprox(Vector3d(0, 0, 5)));
-  // Nothing on the sphere is high enough: straight above.
+  // No position on the sphere is high enough, so the view is straight above.
   EXPECT_TRUE(
       see::place_view({0, 0, -9}, {1, 0, 0}, placement).position.isApprox(Vector3d(0, 0, -4)));
 }
 
-// What was seen lies at x < 0, so the view moves over the edge, to x > 0. Displacement and turn
-// about e_b add up: tan(alpha) = (s+1)a/d, theta = alpha - atan(a/d), angle = alpha + theta.
+// The observed points are at x < 0, so the view moves over the edge to x > 0. The displacement and
+// the rotation about e_b add up: tan(alpha) = (s+1)a/d, theta = alpha - atan(a/d), angle = alpha +
+// theta.
 TEST(AdjustView, MovesOverEdgeByReleasedAngles) {
   see::Frontier frontier = edge_frontier();
   see::AttemptRecord record;
@@ -59,7 +60,8 @@ TEST(AdjustView, MovesOverEdgeByReleasedAngles) {
   EXPECT_TRUE(frontier.view.direction.isApprox(-expected.normalized(), 1e-12));
 }
 
-// Along e_b the turn takes back part of the shift: what is left is the angle of the centroid.
+// Along e_b, the rotation cancels part of the displacement. The remainder is the angle of the
+// centroid.
 TEST(AdjustView, TurnsByCentroidAngleAlongBoundary) {
   see::Frontier frontier = edge_frontier();
   see::AttemptRecord record;
@@ -77,7 +79,8 @@ TEST(AdjustView, ShiftsWithoutTurningWhenConfigured) {
   EXPECT_TRUE(frontier.view.direction.isApprox(-Vector3d(0.6, 0, 2.0).normalized(), 1e-12));
 }
 
-// Nearer centroids adjust, with a gain that doubles; then one switch; then once more; then the end.
+// Closer centroids lead to adjustments with a doubling gain. Then the side is switched once, and
+// after another attempt the adjustment ends.
 TEST(AdjustView, TriesEachSideUntilItStopsImproving) {
   see::Frontier frontier = edge_frontier();
   see::AttemptRecord record{.views = 7};
@@ -88,11 +91,11 @@ TEST(AdjustView, TriesEachSideUntilItStopsImproving) {
   EXPECT_TRUE(adjust(0.5));
   EXPECT_TRUE(adjust(0.4));
   EXPECT_EQ(record.gain, 4.0);
-  EXPECT_TRUE(adjust(0.4));  // no nearer: back to the observing line
+  EXPECT_TRUE(adjust(0.4));  // not closer: back to the line of observation
   EXPECT_TRUE(frontier.view.direction.isApprox(-Vector3d(1, 0, 1).normalized(), 1e-12));
   EXPECT_EQ(record.gain, 1.0);
-  EXPECT_EQ(record.views, 7);  // the count of views goes on
-  EXPECT_TRUE(adjust(0.9));    // a new start: any centroid is nearer
+  EXPECT_EQ(record.views, 7);  // the number of views increases further
+  EXPECT_TRUE(adjust(0.9));    // new start: any centroid counts as closer
   EXPECT_FALSE(adjust(0.9));
 }
 

@@ -10,8 +10,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Trap T8, each condition of the selection in turn. The sensor is at the origin; proposal 0 is the
-// nearest one, sees one other frontier, and is seen as each test says.
+// Trap T8: each condition of the selection in turn. The sensor is at the origin. Proposal 0 is the
+// nearest one and covers one other frontier. Each test defines which proposals cover it.
 class SelectByCoverage : public testing::Test {
  protected:
   std::size_t select() {
@@ -31,14 +31,14 @@ TEST_F(SelectByCoverage, SelectsNearestWhenNoViewSeesIt) {
 
 TEST_F(SelectByCoverage, SelectsNearestWhenNoViewSeesMore) {
   graph_.set_edges(10, {20, 30});
-  graph_.set_edges(20, {10, 30});  // as many: the comparison is strict
+  graph_.set_edges(20, {10, 30});  // equal count: the comparison is strict
   EXPECT_EQ(select(), 0U);
 }
 
 TEST_F(SelectByCoverage, SelectsMaxFrontiersPerMetreAmongViewsOfNearest) {
   graph_.set_edges(10, {20});
   graph_.set_edges(20, {10, 30});      // 2 frontiers for 2 m
-  graph_.set_edges(30, {10, 20, 40});  // 3 for 3 m: no better, and farther
+  graph_.set_edges(30, {10, 20, 40});  // 3 frontiers for 3 m: not better, and farther away
   EXPECT_EQ(select(), 1U);
   positions_[2] = {2.9, 0, 0};
   EXPECT_EQ(select(), 2U);

@@ -15,7 +15,7 @@ using Eigen::Vector3f;
 
 const geometry::Camera camera{geometry::CameraConfig{.width = 212, .height = 120}};
 const geometry::View front = geometry::look_at({2.0, 0.0, 0.0}, {0, 0, 0});
-const std::vector<tests::Sphere> ball = {{}};  // radius 0.5 about the origin
+const std::vector<tests::Sphere> ball = {{}};  // radius 0.5 around the origin
 
 TEST(BlockImage, ComputesCountAndMeanOfReturns) {
   const geometry::Scan scan = tests::scan_spheres(ball, camera, front);
@@ -32,7 +32,7 @@ TEST(BlockImage, ComputesCountAndMeanOfReturns) {
   for (std::size_t b = 0; b < image.blocks.size(); ++b) {
     ASSERT_EQ(image.blocks[b].returns, counts[b]);
     if (counts[b] == 0) continue;
-    // Single precision sums of sixteen numbers of size 1.
+    // Single-precision sum of sixteen numbers of magnitude 1.
     EXPECT_LT((image.blocks[b].mean - sums[b] / static_cast<float>(counts[b])).norm(), 1e-5F);
     const auto hit = image.projection.project(image.blocks[b].mean);
     ASSERT_TRUE(hit);
@@ -48,14 +48,16 @@ TEST(BlockImage, HasRadialNormalsOnSphere) {
   for (const surfel::Block& block : testing_support::not_empty(image.blocks)) {
     const Vector3f radial = block.mean.normalized();
     if (block.returns < 16 || radial.x() < 0.5F)
-      continue;                                  // beyond 60 degrees windows are lopsided
-    EXPECT_GT(block.normal.dot(radial), 0.98F);  // 11 degrees: a window spans 25 of the sphere
+      continue;  // beyond 60 degrees windows are asymmetric
+    // 11 degrees: a window covers 25 degrees of the sphere.
+    EXPECT_GT(block.normal.dot(radial), 0.98F);
     ++tested;
   }
   EXPECT_GT(tested, 100);
 }
 
-// Behind a small ball stands a large one: blocks on the small one's outline keep only it.
+// A large ball is behind a small one. Blocks on the outline of the small ball contain only that
+// ball.
 TEST(BlockImage, KeepsNearerSurfaceInEdgeBlocks) {
   const std::vector<tests::Sphere> two = {{{0.5, 0, 0}, 0.2}, {{-5, 0, 0}, 3.0}};
   const geometry::Scan scan = tests::scan_spheres(two, camera, front);
@@ -70,7 +72,8 @@ TEST(BlockImage, KeepsNearerSurfaceInEdgeBlocks) {
   EXPECT_GT(edges, 10);
 }
 
-// On a surface across the optical axis at distance z, f_x f_y / z^2 rays meet a square metre.
+// On a surface perpendicular to the optical axis at distance z, there are f_x f_y / z^2 rays per
+// square metre.
 TEST(BlockImage, HasRayDensityOfPinholeCamera) {
   const std::vector<tests::Sphere> wall = {{{-1000.0, 0, 0}, 1000.0}};
   const surfel::BlockImage image =
@@ -80,8 +83,8 @@ TEST(BlockImage, HasRayDensityOfPinholeCamera) {
   EXPECT_NEAR(image.ray_density(middle, middle.mean, 1.0F), expected, 0.01 * expected);
 }
 
-// The same returns without their pixels: the cube's faces hold each of them once, and the density
-// of rays, now counted rather than known, is the camera's.
+// The same returns without pixels: the cube faces contain each return once. The ray density, which
+// is now counted, equals that of the camera.
 TEST(BlockImage, SortsSweepIntoCubeFaces) {
   geometry::Scan scan = tests::scan_spheres(ball, camera, front);
   const surfel::BlockImage organised =
@@ -101,11 +104,11 @@ TEST(BlockImage, SortsSweepIntoCubeFaces) {
   }
   EXPECT_EQ(returns, scan.points.size());
   const double expected = organised.ray_density(middle, middle.mean, 1.0F);
-  EXPECT_NEAR(density / blocks, expected, 0.15 * expected);  // a block holds 11 to 16 whole rays
+  EXPECT_NEAR(density / blocks, expected, 0.15 * expected);  // a block has 11 to 16 whole rays
 }
 
-// A miss is known only where the sensor is known to have shot: in the camera's view, of which no
-// block reaches out.
+// A miss is only known where the sensor is known to have fired: inside the camera's view. No block
+// extends beyond it.
 TEST(BlockImage, MarksSweepMissesOnlyInFront) {
   geometry::Scan scan = tests::scan_spheres(ball, camera, front);
   scan.pixels.clear();

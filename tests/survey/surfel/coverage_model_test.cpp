@@ -12,8 +12,8 @@ namespace {
 constexpr double radius = 0.005;
 constexpr double degree = std::numbers::pi / 180.0;
 
-/// The uncovered share by simulation: a square grid of rays at a random offset meets the plane
-/// z = 0, each return is displaced by noise, and the origin is covered if one comes near it.
+/// Simulates the uncovered fraction: a square grid of rays with a random offset hits the plane z =
+/// 0, and each return is displaced by noise. The origin is covered if a return is close enough.
 double simulated_uncovered_share(double ray_density, double incidence, const surfel::Noise& noise,
                                  int trials) {
   std::mt19937_64 generator(1);
@@ -21,7 +21,7 @@ double simulated_uncovered_share(double ray_density, double incidence, const sur
   std::normal_distribution<double> normal;
   const double cosine = std::cos(incidence), sine = std::sin(incidence);
   const double across = std::sqrt(cosine / ray_density), along = across / cosine;
-  // Returns from farther away than this reach the ball with a probability below 1e-5.
+  // Returns from farther away are in the ball with a probability below 1e-5.
   const double reach = radius + 4.5 * std::hypot(noise.isotropic, noise.along_ray);
   const int rows = static_cast<int>(reach / across) + 1;
   const int columns = static_cast<int>(reach / along) + 1;
@@ -43,7 +43,8 @@ double simulated_uncovered_share(double ray_density, double incidence, const sur
   return static_cast<double>(uncovered) / trials;
 }
 
-/// Four standard deviations of the simulated share, and 0.02 for the table's interpolation.
+/// Returns four standard deviations of the simulated fraction, plus 0.02 for the interpolation of
+/// the table.
 double tolerance(double share, int trials) {
   return 4.0 * std::sqrt(share * (1.0 - share) / trials) + 0.02;
 }
@@ -84,7 +85,8 @@ TEST(CoverageModel, MatchesSimulationForNoiseAlongRay) {
   }
 }
 
-/// The same for looks whose points are all displaced alike, by the given deviation along each axis.
+/// Simulates observations in which all points have the same displacement, with this standard
+/// deviation along each axis.
 double displaced_uncovered_share(double ray_density, const surfel::Noise& noise, double deviation,
                                  int observations) {
   std::mt19937_64 generator(2);
@@ -95,7 +97,8 @@ double displaced_uncovered_share(double ray_density, const surfel::Noise& noise,
   int uncovered = 0;
   for (int observation = 0; observation < observations; ++observation) {
     const double u = uniform(generator), v = uniform(generator);
-    const double lift = deviation * normal(generator);  // in the plane any offset is as likely
+    // In the plane all offsets are equally likely.
+    const double lift = deviation * normal(generator);
     bool is_covered = false;
     for (int i = -reach; i <= reach && !is_covered; ++i) {
       for (int j = -reach; j <= reach && !is_covered; ++j) {
@@ -110,7 +113,8 @@ double displaced_uncovered_share(double ray_density, const surfel::Noise& noise,
   return static_cast<double>(uncovered) / observations;
 }
 
-// Points of one look miss together: many rays do not help against an error of the pose.
+// A pose error displaces all points of an observation together, so many rays do not reduce its
+// effect.
 TEST(CoverageModel, MatchesSimulationForPoseErrors) {
   constexpr int observations = 4000;
   for (const double deviation : {0.5, 1.0, 3.0}) {
@@ -130,14 +134,14 @@ TEST(CoverageModel, MatchesSimulationForPoseErrors) {
   }
 }
 
-// A thousandth of a radian at ten metres is a centimetre across the ray: all of it across a surface
-// that is met flat, none across one that is faced.
+// 0.001 rad at 10 m is 1 cm across the ray. On a surface at grazing incidence all of it counts, on
+// a frontal surface none.
 TEST(CoverageModel, ScalesAngleErrorsWithDepthAcrossRay) {
   const surfel::Noise noise{.angle = 0.001};
   EXPECT_NEAR(noise.lateral_error(1.0, 10.0), 0.0, 1e-12);
   EXPECT_NEAR(noise.lateral_error(0.0, 10.0), 0.01, 1e-12);
   EXPECT_NEAR(noise.lateral_error(std::cos(30.0 * degree), 20.0), 0.01, 1e-12);
-  constexpr double spacing = 0.0001;  // of rays at a metre
+  constexpr double spacing = 0.0001;  // ray spacing at 1 m
   const surfel::CoverageModel exact(radius, {}, spacing), turned(radius, noise, spacing);
   const auto density = [](double depth) {
     return static_cast<float>(0.5 / std::pow(spacing * depth, 2));
@@ -146,8 +150,8 @@ TEST(CoverageModel, ScalesAngleErrorsWithDepthAcrossRay) {
   EXPECT_LT(turned.hazard(density(20.0), 0.5F), 0.9F * exact.hazard(density(20.0), 0.5F));
 }
 
-// The discs of radius r_d about a grid of spacing s cover the plane if s <= r_d sqrt(2), and
-// pi r_d^2 / s^2 of it if they do not touch.
+// Discs of radius r_d around a grid with spacing s cover the plane if s <= r_d sqrt(2). If they do
+// not touch, they cover pi r_d^2 / s^2 of it.
 TEST(CoverageModel, MatchesDiscCoverageWithoutNoise) {
   const surfel::CoverageModel coverage_model(radius, {});
   EXPECT_EQ(coverage_model.hazard(static_cast<float>(1.0 / (radius * radius)), 1.0F),
@@ -155,7 +159,7 @@ TEST(CoverageModel, MatchesDiscCoverageWithoutNoise) {
   const double sparse = 0.125;  // rays in r_d^2: s = 2.8 r_d
   EXPECT_NEAR(
       1.0 - std::exp(-coverage_model.hazard(static_cast<float>(sparse / (radius * radius)), 1.0F)),
-      std::numbers::pi * sparse, 0.02);  // the grid's offset is sampled at 64 places
+      std::numbers::pi * sparse, 0.02);  // 64 samples of the grid offset
 }
 
 TEST(CoverageModel, IncreasesFromZeroWithRayDensity) {
@@ -170,7 +174,8 @@ TEST(CoverageModel, IncreasesFromZeroWithRayDensity) {
   EXPECT_LE(before, surfel::CoverageModel::max_hazard);
 }
 
-// Rays 1 mm apart at a metre: a spacing tells the depth, and the look counts with the noise there.
+// Rays are 1 mm apart at 1 m, so their spacing determines the depth. The observation uses the noise
+// at that depth.
 TEST(CoverageModel, DerivesDepthOfGrowingNoiseFromRaySpacing) {
   constexpr double ball = 0.02, spacing = 0.001;
   const surfel::Noise noise{.isotropic = 0.01, .growing = 1.0, .depth = 10.0};
@@ -181,7 +186,7 @@ TEST(CoverageModel, DerivesDepthOfGrowingNoiseFromRaySpacing) {
     const surfel::CoverageModel constant(ball, {.isotropic = sigma});
     const auto density = static_cast<float>(1.0 / std::pow(spacing * depth, 2));
     const float expected = constant.hazard(density, 1.0F);
-    // Between two nodes of the table the noise changes, too.
+    // Between two nodes of the table the noise varies as well.
     EXPECT_NEAR(growing.hazard(density, 1.0F), expected, 0.12F * expected) << depth;
   }
 }

@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 
 const geometry::Camera camera{geometry::CameraConfig{.width = 424, .height = 240}};
-const std::vector<tests::Sphere> ball = {{}};  // radius 0.5 about the origin
+const std::vector<tests::Sphere> ball = {{}};  // radius 0.5 around the origin
 constexpr float tolerance = 0.01F;
 
 surfel::FreeSpaceHistory make_history(
@@ -48,12 +48,12 @@ const std::vector<Vector3d> around = {{2, 0, 0}, {-2, 0, 0}, {0, 2, 0}, {0, -2, 
 TEST(FreeSpaceHistory, NeverMarksInsideOfSolidAsEmpty) {
   for (const bool misses_are_empty : {false, true}) {
     const surfel::FreeSpaceHistory clean = make_history(around, 0.0, misses_are_empty);
-    // Ranges are kept in single precision of a few tenths of a millimetre.
+    // Ranges have single precision with an error of a few tenths of a millimetre.
     for (const Vector3f& p : points_in_ball(0.499F, 20000)) {
       ASSERT_NE(clean.query(p), surfel::SpaceState::empty) << p.transpose();
     }
-    // Noisy depths of sixteen pixels scatter by a quarter of sigma about their mean; 3 cm inside is
-    // beyond the worst of a hundred thousand.
+    // The mean of sixteen noisy depths has a standard deviation of a quarter of sigma. 3 cm inside
+    // exceeds the worst of a hundred thousand.
     const surfel::FreeSpaceHistory noisy = make_history(around, 0.01, misses_are_empty);
     for (const Vector3f& p : points_in_ball(0.47F, 20000)) {
       ASSERT_NE(noisy.query(p), surfel::SpaceState::empty) << p.transpose();
@@ -68,7 +68,7 @@ TEST(FreeSpaceHistory, DistinguishesEmptyMeasuredAndUnknown) {
   EXPECT_EQ(history.query({0, 0, 0}), surfel::SpaceState::hidden);      // inside
   EXPECT_EQ(history.query({-1.0F, 0, 0}), surfel::SpaceState::hidden);  // behind
   EXPECT_EQ(history.query({1.0F, 0, 0.3F}),
-            surfel::SpaceState::hidden);                                // on a ray without a return
+            surfel::SpaceState::hidden);                                // on a no-return ray
   EXPECT_EQ(history.query({3.0F, 0, 0}), surfel::SpaceState::outside);  // behind the sensor
 }
 
@@ -78,8 +78,8 @@ TEST(FreeSpaceHistory, MarksNoReturnRaysAsEmptyOnlyWhenConfigured) {
   EXPECT_FALSE(history.is_verified_empty({1.0F, 0, 0.35F}, 0.02F));
 }
 
-/// Beside the ball, where a sensor at (2, 0, 0) has rays without a return, nearer than some
-/// returns.
+/// Returns points next to the ball, on no-return rays of a sensor at (2, 0, 0), closer than some of
+/// the returns.
 std::vector<Vector3f> offset_points(int count) {
   std::vector<Vector3f> points;
   for (int i = 0; i < count; ++i) {
@@ -101,8 +101,8 @@ TEST(FreeSpaceHistory, LimitsMissesToFacingSurfacesAfterFalseMisses) {
   EXPECT_EQ(history.query_surface(beside, front), surfel::SpaceState::empty);
   EXPECT_EQ(history.query_surface(beside, back), surfel::SpaceState::hidden);
   EXPECT_EQ(history.query_surface(beside, side), surfel::SpaceState::hidden);
-  EXPECT_EQ(history.query(beside), surfel::SpaceState::empty);  // as long as nobody asks for a side
-  // A return proves what is before it empty, whichever way that faces.
+  EXPECT_EQ(history.query(beside), surfel::SpaceState::empty);  // if no side is specified
+  // Space in front of a return is empty for both orientations.
   EXPECT_EQ(history.query_surface(before, back), surfel::SpaceState::empty);
 }
 
@@ -113,18 +113,18 @@ TEST(FreeSpaceHistory, DetectsFalseMissesOnlyFromManyPoints) {
     history.compare_misses(points, std::vector<Vector3f>(points.size(), normal));
     return history.has_false_misses();
   };
-  EXPECT_FALSE(finds_false_misses(points_in_ball(0.499F, 2000), front));  // behind returns
-  EXPECT_FALSE(finds_false_misses(offset_points(20), front));             // noise, or a wire
-  EXPECT_FALSE(finds_false_misses(offset_points(40), side));  // edge-on: rays pass it by
+  EXPECT_FALSE(finds_false_misses(points_in_ball(0.499F, 2000), front));  // behind the returns
+  EXPECT_FALSE(finds_false_misses(offset_points(20), front));             // noise or a wire
+  EXPECT_FALSE(finds_false_misses(offset_points(40), side));              // edge-on: rays miss it
   std::vector<Vector3f> far = offset_points(40);
   for (Vector3f& point : far) point.x() -= 2.0F;
-  EXPECT_FALSE(finds_false_misses(far, front));  // beyond every return: maybe out of range
+  EXPECT_FALSE(finds_false_misses(far, front));  // beyond all returns, possibly out of range
   std::vector<Vector3f> mixed = points_in_ball(0.499F, 100000);
   for (const Vector3f& point : offset_points(40)) mixed.push_back(point);
-  EXPECT_FALSE(finds_false_misses(mixed, front));  // below a thousandth or two
+  EXPECT_FALSE(finds_false_misses(mixed, front));  // below 0.1 to 0.2%
 }
 
-/// Twin: the one compares after every scan, the other all at the end.
+/// Reference: one history compares after each scan, the other compares everything at the end.
 TEST(FreeSpaceHistory, ComparesEachPointWithEachImageOnce) {
   const std::vector<Vector3f> points = offset_points(40);
   const std::vector<Vector3f> normals(points.size(), Vector3f::UnitX());
@@ -143,12 +143,13 @@ TEST(FreeSpaceHistory, ComparesEachPointWithEachImageOnce) {
 TEST(FreeSpaceHistory, VerifiesBallsAsEmptyOnlyInFrontOfReturns) {
   const surfel::FreeSpaceHistory history = make_history({{2, 0, 0}}, 0.0, true);
   EXPECT_TRUE(history.is_verified_empty({1.0F, 0, 0}, 0.1F));
-  EXPECT_FALSE(history.is_verified_empty({0.55F, 0, 0}, 0.1F));  // reaches into the ball
-  EXPECT_FALSE(history.is_verified_empty({1.0F, 0, 0}, 0.4F));   // reaches beyond its outline
+  EXPECT_FALSE(history.is_verified_empty({0.55F, 0, 0}, 0.1F));  // extends into the ball
+  // Extends beyond the outline of the ball.
+  EXPECT_FALSE(history.is_verified_empty({1.0F, 0, 0}, 0.4F));
   EXPECT_FALSE(history.is_verified_empty({-1.0F, 0, 0}, 0.1F));
 }
 
-/// Many looks at one side, and one at the other side long before.
+/// Many observations of one side, after one early observation of the other side.
 TEST(FreeSpaceHistory, RemovesRedundantImages) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> uniform(-0.1, 0.1);
@@ -168,7 +169,7 @@ TEST(FreeSpaceHistory, RemovesRedundantImages) {
     EXPECT_EQ(few.query(p), surfel::SpaceState::empty) << p.transpose();
     EXPECT_TRUE(few.is_verified_empty(p, 0.1F));
   }
-  EXPECT_TRUE(is_unknown(few.query({-1, 0, 0}, 1)));  // the first one is not asked
+  EXPECT_TRUE(is_unknown(few.query({-1, 0, 0}, 1)));  // the first image is not queried
   for (const Vector3f& p : points_in_ball(0.499F, 2000)) {
     ASSERT_NE(few.query(p), surfel::SpaceState::empty);
   }

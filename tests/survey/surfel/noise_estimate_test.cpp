@@ -24,7 +24,7 @@ TEST(NoiseEstimate, IsEmptyBeforeFirstScan) {
   EXPECT_FALSE(surfel::NoiseEstimate().noise(0.0, 2.0));
 }
 
-// The lower quartile of estimates from 400 returns is 3 % low; curvature adds a little.
+// The lower quartile of estimates from 400 returns is 3% too low. Curvature adds a little.
 TEST(NoiseEstimate, FindsIsotropicNoise) {
   surfel::NoiseEstimate estimate;
   estimate.add(
@@ -55,13 +55,13 @@ TEST(NoiseEstimate, IsZeroForNegligibleNoise) {
   surfel::NoiseEstimate estimate;
   estimate.add(
       make_image(tests::scan_spheres(ball, camera, geometry::look_at({2, 0, 0}, {0, 0, 0}))));
-  const auto noise = estimate.noise(6e-4, 2.0);  // the sphere's curvature alone shows 0.2 mm
+  const auto noise = estimate.noise(6e-4, 2.0);  // the curvature of the sphere alone causes 0.2 mm
   ASSERT_TRUE(noise);
   EXPECT_EQ(noise->across(1.0), 0.0);
 }
 
-/// Balls side by side, each as large in the image, from near to far, and noise along the ray of
-/// `constant` and of `growing` times the squared depth.
+/// Balls of equal image size, side by side, from near to far. The noise along the ray is `constant`
+/// plus `growing` times the squared depth.
 surfel::BlockImage make_depth_image(double constant, double growing) {
   std::vector<tests::Sphere> balls;
   for (const double depth : {1.0, 1.6, 2.5, 3.8}) {
@@ -81,7 +81,7 @@ surfel::BlockImage make_depth_image(double constant, double growing) {
   return make_image(scan);
 }
 
-// 2 mm at a metre, 32 mm at four.
+// 2 mm at 1 m, 32 mm at 4 m.
 TEST(NoiseEstimate, FindsNoiseThatGrowsWithSquareOfRange) {
   surfel::NoiseEstimate estimate;
   estimate.add(make_depth_image(0.0, 0.002));

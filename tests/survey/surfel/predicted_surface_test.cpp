@@ -41,13 +41,14 @@ TEST(PredictedSurface, ContinuesBeyondOutlineIntoUnknownSpaceOnly) {
     EXPECT_TRUE(is_unknown(known.space.query(patch.position)));
     EXPECT_GT(patch.weight, 0.0F);
     all += patch.weight;
-    // The sensor at (2, 0, 0) saw the ball up to x = 0.125.
+    // The sensor at (2, 0, 0) observed the ball up to x = 0.125.
     if (patch.position.x() < 0.2F) behind += patch.weight;
   }
   EXPECT_GT(behind, 0.9 * all);
 }
 
-// Twin: the one predicted after every scan and asks only what is new; the other asks everything.
+// Reference: one instance predicts after each scan and only queries what is new; the other queries
+// everything.
 TEST(PredictedSurface, MatchesFullPredictionWhenUpdated) {
   Knowledge known;
   surfel::PredictedSurface old({});
@@ -67,8 +68,8 @@ TEST(PredictedSurface, MatchesFullPredictionWhenUpdated) {
   }
 }
 
-// What rays without a return had refuted is open again as soon as they are found to pass through
-// surface; twin: one that never knew otherwise.
+// Patches refuted by no-return rays are open again as soon as such rays are found to pass through
+// surface. The reference model has this information from the first scan.
 TEST(PredictedSurface, RestoresPatchesRefutedByFalseMisses) {
   Knowledge known;
   for (const Vector3d& viewpoint : {Vector3d(2, 0, 0), Vector3d(0, 2, 0)})
@@ -76,7 +77,7 @@ TEST(PredictedSurface, RestoresPatchesRefutedByFalseMisses) {
   surfel::PredictedSurface old({});
   old.predict(known.map, known.space, std::nullopt);
   const std::size_t before = old.patches().size();
-  std::vector<Vector3f> beside;  // on such rays of the first scan
+  std::vector<Vector3f> beside;  // on no-return rays of the first scan
   for (int i = 0; i < 1000; ++i) {
     beside.emplace_back(0.3F, 0.0003F * static_cast<float>(i) + 0.6F, 0.0F);
   }
@@ -100,7 +101,7 @@ int count_patches(const surfel::PredictedSurface& predicted, surfel::Continuatio
       }));
 }
 
-// From nearby, images cut the ball off; from afar, it ends within them.
+// From nearby, the image edge cuts off the ball. From far away, the whole ball is in the image.
 TEST(PredictedSurface, DistinguishesCutOffFromHiddenSurface) {
   Knowledge near, far;
   near.scan_from({0.9, 0, 0});
@@ -121,7 +122,7 @@ TEST(PredictedSurface, DistinguishesCutOffFromHiddenSurface) {
       EXPECT_FALSE(is_outside);
     }
   }
-  // Once an image has looked there, it is what something hides, or known.
+  // After another image covers that region, the surface there is hidden or known.
   near.scan_from({2, 0, 0});
   cut.predict(near.map, near.space, std::nullopt);
   EXPECT_EQ(count_patches(cut, surfel::Continuation::beyond), 0);
@@ -139,12 +140,12 @@ TEST(PredictedSurface, LearnsSeparateHitRateForCutOffSurface) {
   }
   const double beyond = predicted.hit_rate(surfel::Continuation::beyond, 0);
   const double straight = predicted.hit_rate(surfel::Continuation::straight, 0);
-  predicted.grade(cut_off, known.map, known.space, known.map.surfels().size());  // nothing appeared
+  predicted.grade(cut_off, known.map, known.space, known.map.surfels().size());  // no new surface
   EXPECT_LT(predicted.hit_rate(surfel::Continuation::beyond, 0), beyond);
   EXPECT_EQ(predicted.hit_rate(surfel::Continuation::straight, 0), straight);
 }
 
-/// A plate, 40 cm square and 5 mm thick, its front at x = 0.
+/// Scans a plate of 40 x 40 cm, 5 mm thick, with its front at x = 0.
 geometry::Scan scan_plate(const geometry::View& view) {
   geometry::Scan scan;
   scan.world_from_sensor = geometry::camera_pose(view);
@@ -161,7 +162,7 @@ geometry::Scan scan_plate(const geometry::View& view) {
   return scan;
 }
 
-// Past the plate's rim there is nothing: it is thin, and has a back. A ball never is.
+// Space beyond the plate's rim is empty, so it is thin and has a back. This never holds for a ball.
 TEST(PredictedSurface, PredictsBackOfThinObjects) {
   Knowledge plate, solid;
   const auto scan_from = [&](const Vector3d& viewpoint) {
@@ -221,7 +222,7 @@ TEST(PredictedSurface, UpdatesHitRatesFromObservedSurface) {
   const double before = hopeful.hit_rate(surfel::Continuation::straight, 0);
   const float weight_before = disappointed.patches().front().weight;
 
-  // Nothing new appeared: all expectations failed, and the places are still unknown.
+  // No new surface appeared: all predictions failed, and their positions are still unknown.
   disappointed.grade(all, known.map, known.space, known.map.surfels().size());
   stubborn.grade(all, known.map, known.space, known.map.surfels().size());
   EXPECT_LT(disappointed.hit_rate(surfel::Continuation::straight, 0), before);
@@ -230,7 +231,7 @@ TEST(PredictedSurface, UpdatesHitRatesFromObservedSurface) {
   EXPECT_LT(disappointed.patches().front().weight, 0.4F * weight_before);
   EXPECT_GT(disappointed.patches().front().weight, 0.0F);
 
-  // A view of the whole outline's surroundings shows what the straight patches promised.
+  // Views all around the outline show the surface predicted by straight patches.
   const std::size_t first_new = known.map.surfels().size();
   for (const Vector3d& viewpoint :
        {Vector3d(0, 2, 0), Vector3d(0, -2, 0), Vector3d(0, 0, 2), Vector3d(0, 0, -2)}) {
@@ -241,7 +242,7 @@ TEST(PredictedSurface, UpdatesHitRatesFromObservedSurface) {
             disappointed.hit_rate(surfel::Continuation::straight, 0) + 0.1);
 }
 
-// What was hardly to be seen tells little by not having been seen.
+// If a patch was hardly visible, its absence contains little information.
 TEST(PredictedSurface, ReducesWeightByLineOfSightConfidence) {
   Knowledge known;
   known.scan_from({2, 0, 0});
@@ -258,7 +259,7 @@ TEST(PredictedSurface, ReducesWeightByLineOfSightConfidence) {
   EXPECT_FLOAT_EQ(weight_after(0.2F), 0.87F * untouched);
 }
 
-constexpr float scale = 0.3F;  // of the clearness
+constexpr float scale = 0.3F;  // of the line-of-sight confidence
 
 std::vector<surfel::PredictedPatch> patches_at(const std::vector<Vector3f>& positions) {
   std::vector<surfel::PredictedPatch> patches;
@@ -277,7 +278,8 @@ TEST(LineOfSightModel, IsOneInFrontOfKnownSurface) {
   EXPECT_EQ(line_of_sight.of(0, {2, 0, 0}), 1.0F);
 }
 
-// The ball's radius is 0.5. The whole stretch before a place in its shadow is unknown from behind.
+// The radius of the ball is 0.5. From behind, all space in front of a position in its shadow is
+// unknown.
 TEST(LineOfSightModel, DecreasesWithUnknownSpaceOnRay) {
   Knowledge seen;
   seen.scan_from({2, 0, 0});
@@ -285,7 +287,7 @@ TEST(LineOfSightModel, DecreasesWithUnknownSpaceOnRay) {
   surfel::LineOfSightModel line_of_sight(scale);
   line_of_sight.update(patches, seen.space);
   EXPECT_NEAR(line_of_sight.of(0, {-2, 0, 0}), std::exp(-3.0F), 1e-6F);
-  // From the side the shadow ends soon.
+  // From the side, the shadow is short.
   EXPECT_GT(line_of_sight.of(1, {0, 2, 0}), 2.0F * line_of_sight.of(0, {-2, 0, 0}));
   EXPECT_LT(line_of_sight.of(1, {0, 2, 0}), 1.0F);
 }
@@ -303,7 +305,8 @@ TEST(LineOfSightModel, IsOneWithoutImagesAndForPriors) {
   EXPECT_EQ(line_of_sight.of(0, {-1, 0, 0}), 1.0F);
 }
 
-// Twin: one is asked after every scan, with other patches before and beside; the other only once.
+// Reference: one model is queried after each scan, with other patches before and between; the other
+// only once.
 TEST(LineOfSightModel, MatchesFullEvaluationWhenUpdated) {
   Knowledge seen;
   const std::vector<Vector3f> positions = {
@@ -316,7 +319,7 @@ TEST(LineOfSightModel, MatchesFullEvaluationWhenUpdated) {
        {Vector3d(2, 0, 0), Vector3d(0, 2, 0), Vector3d(-1.2, -1.2, 0), Vector3d(0, 0, -2)}) {
     seen.scan_from(viewpoint);
     auto patches = patches_at(positions);
-    // Another order, other names, one that moved.
+    // Different order, different identifiers, and one moved patch.
     std::rotate(patches.begin(), patches.begin() + 1, patches.end());
     patches[0].position.x() += 0.01F * static_cast<float>(seen.space.image_count());
     old.update(patches, seen.space);
@@ -338,29 +341,30 @@ TEST(PredictionYield, IsRatioOfObservedToPredictedArea) {
   EXPECT_EQ(yield.value(), 1.0);
   yield.learn(2.0, 1.0, 0.0);
   EXPECT_DOUBLE_EQ(yield.value(), 0.5);
-  yield.learn(0.0, 7.0, 7.0);  // nothing was promised: nothing is learnt
+  yield.learn(0.0, 7.0, 7.0);  // without a prediction the yield does not change
   EXPECT_DOUBLE_EQ(yield.value(), 0.5);
-  yield.learn(4.0, 12.0, 12.0);  // 12.6 of 5.2
+  yield.learn(4.0, 12.0, 12.0);  // 12.6 m^2 found for 5.2 m^2 predicted
   EXPECT_DOUBLE_EQ(yield.value(), 12.6 / 5.2);
 }
 
-// All that came of a hundred square metres says little of one: half of what is believed is new.
+// Earlier scans have at most twice the weight of the present one. After 100 m^2, a new square metre
+// still has a third of the total weight.
 TEST(PredictionYield, LimitsWeightOfPastToTwiceThePresent) {
   surfel::PredictionYield yield;
   yield.learn(100.0, 100.0, 0.0);
   EXPECT_EQ(yield.value(), 1.0);
   yield.learn(1.0, 0.0, 0.0);
   EXPECT_DOUBLE_EQ(yield.value(), 2.0 / 3.0);
-  yield.learn(1.0, 0.0, 0.0);  // 0.6 of two from three
+  yield.learn(1.0, 0.0, 0.0);  // the previous sums, 2 of 3, are multiplied by 0.6
   EXPECT_DOUBLE_EQ(yield.value(), 1.2 / 2.8);
 }
 
-// Relief and noise beside what is known are worth no more than was promised.
+// Relief and noise next to known surface do not raise the yield above 1.
 TEST(PredictionYield, ExceedsOneForNewTerritoryOnly) {
   surfel::PredictionYield yield;
   yield.learn(1.0, 5.0, 0.1);
   EXPECT_DOUBLE_EQ(yield.value(), 1.0);
-  yield.learn(1.0, -5.0, 0.1);  // surfels that shared their area: 1.1 - 0.4 of 1.6
+  yield.learn(1.0, -5.0, 0.1);  // new surfels shared existing area: 1.1 - 0.4 for 1.6
   EXPECT_DOUBLE_EQ(yield.value(), 0.7 / 1.6);
 }
 
@@ -370,7 +374,7 @@ TEST(PredictionYield, IsBoundedAndForgetsOldScans) {
   EXPECT_DOUBLE_EQ(yield.value(), 0.15);
   yield.learn(1.0, 1000.0, 1000.0);
   EXPECT_DOUBLE_EQ(yield.value(), 6.0);
-  // Ten scans in vain, and the great find is forgotten.
+  // After ten scans without new surface, the large find has no more effect.
   for (int scan = 0; scan < 10; ++scan) yield.learn(1.0, 0.0, 0.0);
   EXPECT_DOUBLE_EQ(yield.value(), 0.15);
 }

@@ -19,9 +19,9 @@ const geometry::Camera camera{geometry::CameraConfig{}};
 const std::vector<tests::Sphere> ball = {{}};
 constexpr float spacing = 0.02F;
 constexpr float jump = 0.06F;
-constexpr double radius = 0.5;  // of tests::Sphere
+constexpr double radius = 0.5;  // radius of tests::Sphere
 
-/// Points of a Fibonacci lattice on a sphere of the ball's size.
+/// Returns points of a Fibonacci lattice on a sphere of the ball's size.
 surfel::PriorSurface sphere_at(const Vector3f& centre, float uncertainty) {
   constexpr int count = 40'000;
   surfel::PriorSurface surface;
@@ -62,7 +62,7 @@ TEST(PriorPredictions, CoverWholeAreaWithPatches) {
   EXPECT_LT(predictions.patches().size(), 40'000U / 2);
 }
 
-// What one look from +x shows is found; the far side stays open.
+// Surface visible from +x is found. The far side remains open.
 TEST(PriorPredictions, AreFoundWhereMeasured) {
   Knowledge known;
   known.scan_from({2, 0, 0});
@@ -80,7 +80,7 @@ TEST(PriorPredictions, AreFoundWhereMeasured) {
   }
 }
 
-// The same in the planner's guesses: what was shown is not guessed, the far side is.
+// In the planner's predictions, the observed side is not predicted and the far side is.
 TEST(PriorPredictions, ArePredictedOnlyWhereOpen) {
   Knowledge known;
   known.scan_from({2, 0, 0});
@@ -96,7 +96,7 @@ TEST(PriorPredictions, ArePredictedOnlyWhereOpen) {
   EXPECT_GT(num_predicted, 1000U);
 }
 
-// A sphere that is not there, beside the ball: the sensor sees through its place.
+// A predicted sphere next to the ball does not exist: the sensor sees through it.
 TEST(PriorPredictions, AreRefutedWhereSensorSeesThroughThem) {
   Knowledge known;
   known.scan_from({2, 0, 0});
@@ -108,15 +108,14 @@ TEST(PriorPredictions, AreRefutedWhereSensorSeesThroughThem) {
     refuted += predictions.state(i) == State::refuted ? 1 : 0;
     const Vector3f& position = predictions.patches()[i].position;
     if (position.x() > 0.6F && position.x() < 1.2F &&
-        position.tail<2>().norm() < 0.15F) {  // in the image, before the ball
+        position.tail<2>().norm() < 0.15F) {  // in the image, in front of the ball
       EXPECT_EQ(predictions.state(i), State::refuted);
     }
   }
   EXPECT_GT(refuted, 20U);
 }
 
-/// The rate of the prior after a look from +x, graded by what that should have shown: all that
-/// faces it.
+/// Returns the rate of the prior after an observation from +x, graded by all surface that faces it.
 double rate_after_observation(const Vector3f& centre) {
   Knowledge known;
   surfel::PredictedSurface predicted({});

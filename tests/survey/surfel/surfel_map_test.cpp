@@ -26,7 +26,8 @@ surfel::BlockImage image_from(const Vector3d& viewpoint, double sigma = 0.0,
       camera, {.block_px = 4, .jump = jump});
 }
 
-// From all sides the surfels' areas add up to the sphere's; 15 % for packing and outlines.
+// With views from all sides, the total area of the surfels is that of the sphere. 15% allow for
+// packing and outlines.
 TEST(SurfelMap, HasTotalAreaOfSurface) {
   surfel::SurfelMap map(spacing);
   const surfel::CoverageModel coverage_model(0.005, {});
@@ -35,7 +36,7 @@ TEST(SurfelMap, HasTotalAreaOfSurface) {
     map.add(image_from(viewpoint), coverage_model, jump, std::nullopt);
   }
   EXPECT_NEAR(map.area(), pi, 0.15 * pi);
-  EXPECT_GT(map.covered_area() / map.area(), 0.97);  // clean and dense
+  EXPECT_GT(map.covered_area() / map.area(), 0.97);  // dense data without noise
 }
 
 TEST(SurfelMap, KeepsSurfelSpacingAndOutwardNormals) {
@@ -51,7 +52,8 @@ TEST(SurfelMap, KeepsSurfelSpacingAndOutwardNormals) {
   }
 }
 
-// A second look from the same place adds as much hazard as the first, and coverage follows.
+// A second observation from the same position adds the same hazard as the first, and the coverage
+// increases accordingly.
 TEST(SurfelMap, AddsHazardsOfObservations) {
   const surfel::CoverageModel coverage_model(0.005, {.isotropic = 0.01});
   surfel::SurfelMap map(spacing);
@@ -63,17 +65,17 @@ TEST(SurfelMap, AddsHazardsOfObservations) {
   for (std::size_t i = 0; i < after_one.size(); ++i) {
     if (map.surfels().positions[i].x() < 0.35F) continue;  // beyond 60 degrees of incidence
     ++tested;
-    // Blocks' normals, hence the ray density, are off by some degrees.
+    // The normals of blocks, and therefore the ray densities, are inaccurate by some degrees.
     const float second = map.surfels().hazards[i] - after_one[i];
     doubled += std::abs(second - after_one[i]) < 0.25F * after_one[i] ? 1 : 0;
   }
   EXPECT_GT(tested, 200);
-  // Noise carries a surfel in twenty too far off the surface to be hit again.
+  // Noise moves one of twenty surfels too far off the surface to be hit again.
   EXPECT_GT(doubled, tested * 9 / 10);
   EXPECT_GT(map.covered_area(), covered_after_one);
 }
 
-// Seen from one side, the surface is open exactly around its outline.
+// If surface is observed from one side, only its outline is open.
 TEST(SurfelMap, IsOpenOnlyAtOutlineOfObservedSurface) {
   surfel::SurfelMap map(spacing);
   map.add(image_from({2, 0, 0}), surfel::CoverageModel(0.005, {}), jump, std::nullopt);
@@ -93,7 +95,8 @@ TEST(SurfelMap, IsOpenOnlyAtOutlineOfObservedSurface) {
   EXPECT_GT(open_outside, 40);          // the outline is 3.0 m long, 150 spacings
 }
 
-// What was measured already stands for no area when surfels come to lie there, and stays so.
+// Surfels on surface that `is_upper` marks as already measured represent no area, and later scans
+// do not change this.
 TEST(SurfelMap, AddsNoAreaInGapsOfMeasuredSurface) {
   const auto is_upper = [](const Vector3f& p) { return p.z() > 0.0F; };
   surfel::SurfelMap map(spacing);
@@ -111,8 +114,8 @@ TEST(SurfelMap, AddsNoAreaInGapsOfMeasuredSurface) {
   EXPECT_GT(map.area_near({0.5F, 0, -0.05F}, 0.2F, 0), 0.0);
 }
 
-// A second look from the same place finds no new territory; one from the other side as much as the
-// first, which knew nothing before.
+// A second observation from the same position finds no new territory. An observation from the other
+// side finds as much as the first one, which started without knowledge.
 TEST(SurfelMap, CountsNewTerritoryBeyondKnownSurface) {
   const surfel::CoverageModel coverage_model(0.005, {});
   surfel::SurfelMap map(spacing);

@@ -19,7 +19,8 @@ using Eigen::Vector3f;
 using geometry::View;
 using testing::HasSubstr;
 
-// A quarter of the depth camera's pixels, and a coverage radius to match: tests take a second.
+// A quarter of the depth camera's pixels and a corresponding coverage radius, so that tests take 1
+// s.
 const geometry::Camera camera{geometry::CameraConfig{.width = 212, .height = 120}};
 const std::vector<tests::Sphere> ball = {{}};
 const std::vector<tests::Sphere> two_balls = {{{0, 0, 0}, 0.4}, {{0.75, 0, 0.2}, 0.3}};
@@ -34,7 +35,7 @@ struct Flight {
   double length = 0.0;
 };
 
-/// Flies until the planner stops or `max_views` were taken.
+/// Flies until the planner stops or `max_views` views have been taken.
 Flight fly(surfel::SurfelPlanner& planner, const std::vector<tests::Sphere>& scene, double sigma,
            std::size_t max_views = 40, bool is_organised = true) {
   Flight flight{{start}};
@@ -50,14 +51,15 @@ Flight fly(surfel::SurfelPlanner& planner, const std::vector<tests::Sphere>& sce
   return flight;
 }
 
-/// Share of the spheres' outside that has a measurement within the coverage radius.
+/// Returns the fraction of the spheres' outer surface with a measurement within the coverage
+/// radius.
 double true_coverage(const surfel::SurfelPlanner& planner, const std::vector<tests::Sphere>& scene,
                      double radius) {
   geometry::PointGrid grid(radius);
   for (const Vector3f& p : planner.cloud().positions) grid.insert(p);
   int covered = 0, all = 0;
   for (const tests::Sphere& sphere : scene) {
-    constexpr int count = 4000;  // a Fibonacci lattice
+    constexpr int count = 4000;  // Fibonacci lattice
     for (int i = 0; i < count; ++i) {
       const double z = 1.0 - 2.0 * (i + 0.5) / count, azimuth = 2.399963229728653 * i;
       const double level = std::sqrt(1.0 - z * z);
@@ -85,14 +87,15 @@ TEST_P(SurfelPlannerWithNoise, CoversSceneAndStops) {
     EXPECT_EQ(planner.stop(), surfel::SurfelStop::little_gain);
     const double coverage = true_coverage(planner, scene, 0.02);
     EXPECT_GT(coverage, 0.97);
-    // The belief is a model's: five points either way is what makes it of use to a pilot.
+    // The estimate comes from a model. It must be accurate to five percentage points to be useful
+    // for a pilot.
     EXPECT_NEAR(planner.predicted_coverage(), coverage, 0.05);
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Sigmas, SurfelPlannerWithNoise, testing::Values(0.0, 0.01, 0.03));
 
-// What was seen on the way need not be looked at again.
+// Surface observed en route need not be observed again.
 TEST(SurfelPlanner, UsesEnRouteScans) {
   surfel::SurfelPlanner standing(small_config(), camera), moving(small_config(), camera);
   const Flight stops = fly(standing, two_balls, 0.01);
@@ -101,7 +104,7 @@ TEST(SurfelPlanner, UsesEnRouteScans) {
   for (std::optional<View> next = start; next && views < 40; ++views) {
     for (double share = 0.25; views > 0 && share < 1.0; share += 0.25) {
       Vector3d position = (1.0 - share) * last.position + share * next->position;
-      if (position.norm() < 1.5) position *= 1.5 / position.norm();  // round the balls
+      if (position.norm() < 1.5) position *= 1.5 / position.norm();  // detour around the balls
       moving.pass(tests::scan_spheres(two_balls, camera, geometry::look_at(position, {0.3, 0, 0}),
                                       0.01, 1000 * views + static_cast<unsigned>(4 * share)));
     }
@@ -158,7 +161,7 @@ TEST(SurfelPlanner, KeepsViewLimits) {
   for (std::size_t i = 1; i < flight.views.size(); ++i) {
     EXPECT_TRUE(config.limits.allow(flight.views[i])) << flight.views[i].position.transpose();
     for (const tests::Sphere& sphere : two_balls) {
-      // Measured points scatter by three standard deviations about the surface.
+      // Measured points scatter around the surface by three standard deviations.
       EXPECT_GT((flight.views[i].position - sphere.centre).norm(), sphere.radius + 0.5 - 0.03);
     }
   }
@@ -225,7 +228,7 @@ TEST(SurfelPlanner, ProposesOnlyViewsInPermittedRegion) {
 TEST(SurfelPlanner, ReportsMissingSurfaceWithReason) {
   surfel::SurfelConfig config = small_config();
   config.limits.min_height = 0.3;
-  config.limits.max_pitch = -0.5;  // only looks down: the lower half cannot be seen
+  config.limits.max_pitch = -0.5;  // the camera only looks down: the lower half is not visible
   surfel::SurfelPlanner planner(config, camera);
   fly(planner, ball, 0.0);
   const surfel::SurveyEstimate estimate = planner.estimate();
@@ -236,7 +239,7 @@ TEST(SurfelPlanner, ReportsMissingSurfaceWithReason) {
     EXPECT_LE(patch.covered_share, 1.0F);
   }
   EXPECT_NEAR(estimate.area, area, 1e-9 * area);
-  // Covered and missing shares make up all of it.
+  // The covered and missing fractions sum to the whole surface.
   double covered = 0.0;
   for (const surfel::EstimatedPatch& patch : estimate.patches)
     covered += patch.area * patch.covered_share;
@@ -245,11 +248,11 @@ TEST(SurfelPlanner, ReportsMissingSurfaceWithReason) {
               1.0, 1e-6);
 }
 
-// The first scan is from a place that the fence forbids: what it saw too thinly for the noise, no
-// view that is allowed sees again. What the allowed views see is none of that.
+// The first scan is from a position outside the fence. It undersamples surface that is not visible
+// from allowed views. Surface that is visible from them is not reported.
 TEST(SurfelPlanner, ReportsUnreachableSurface) {
   surfel::SurfelConfig config = small_config();
-  config.coverage_radius = 0.005;  // far less than the noise: one look covers little
+  config.coverage_radius = 0.005;  // much smaller than the noise: one observation covers little
   config.limits.geofence = {{-9, -9}, {-1, -9}, {-1, 9}, {-9, 9}};
   surfel::SurfelPlanner planner(config, camera);
   fly(planner, ball, 0.03, 10);
@@ -260,14 +263,14 @@ TEST(SurfelPlanner, ReportsUnreachableSurface) {
       EXPECT_GT(patch.position.x(), 0.0F);
     }
   }
-  // Without the fence nothing of a ball is out of reach.
+  // Without the fence the whole ball is reachable.
   config.limits.geofence.clear();
   surfel::SurfelPlanner free(config, camera);
   fly(free, ball, 0.03, 10);
   EXPECT_LT(free.estimate().unreachable, 0.01);
 }
 
-// A sensor that gets no return from slanted surfaces covers less of a ball with a view.
+// With a sensor without returns from slanted surfaces, a view covers less of a ball.
 TEST(SurfelPlanner, PredictsNoCoverageBeyondMaxIncidence) {
   const geometry::Scan scan = tests::scan_spheres(ball, camera, start, 0.01);
   const auto next_gain = [&](double max_incidence) {
@@ -278,7 +281,7 @@ TEST(SurfelPlanner, PredictsNoCoverageBeyondMaxIncidence) {
     return planner.estimate().next_gain;
   };
   EXPECT_LT(next_gain(0.5), 0.9 * next_gain(1.5707));
-  EXPECT_EQ(next_gain(1.4), next_gain(1.5707));  // so far off nothing is counted on anyway
+  EXPECT_EQ(next_gain(1.4), next_gain(1.5707));  // at such angles nothing is expected anyway
 }
 
 TEST(SurfelPlanner, PlansFromSweepsWithoutPixels) {
@@ -306,7 +309,7 @@ TEST(SurfelPlanner, AcceptsLaterScanWithoutPoints) {
   EXPECT_EQ(planner.cloud().size(), points);
 }
 
-// A switch that does nothing would leave the flight as it is.
+// A switch without effect would leave the flight unchanged.
 TEST(SurfelPlanner, ChangesPlanWithEveryAblationSwitch) {
   const auto executed_positions = [](const surfel::SurfelConfig& config) {
     surfel::SurfelPlanner planner(config, camera);

@@ -19,7 +19,7 @@ struct Problem {
   std::vector<float> weights;
 };
 
-/// Views anywhere in a box, each of which sees some of 30 targets.
+/// Returns random views in a box, each of which observes some of 30 targets.
 Problem random_problem(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> coordinate(-5.0, 5.0);
@@ -35,7 +35,8 @@ Problem random_problem(std::uint64_t seed) {
   return problem;
 }
 
-/// Area that all these views cover of the targets: misses multiply.
+/// Returns the area of the targets that these views cover together. Probabilities of misses
+/// multiply.
 double covered(const Problem& problem, const std::vector<std::size_t>& views) {
   double sum = 0.0;
   for (std::uint32_t target = 0; target < problem.weights.size(); ++target) {
@@ -50,7 +51,7 @@ double covered(const Problem& problem, const std::vector<std::size_t>& views) {
   return sum;
 }
 
-// Brute-force twin: every pick anew, from what all picks cover together.
+// Brute-force reference: each pick is computed again from the joint coverage of all picks.
 TEST(PickBatch, MatchesBruteForceGreedyCover) {
   const Vector3d position(1, 2, 3);
   const surfel::BatchSettings settings{.size = 6, .view_price = 3.0, .min_fraction = 0.2};
@@ -108,7 +109,7 @@ TEST(PickBatch, IsEmptyWithoutVisibleTargets) {
   EXPECT_THAT(surfel::pick_batch(blind, {1.0F}, Vector3d::Zero(), {}), testing::IsEmpty());
 }
 
-/// The least cost of a tour through `left`, by recursion over what comes next.
+/// Returns the minimum cost of a tour through `left`, by recursion over the next stop.
 double min_cost(const Problem& problem, const std::vector<Stop>& batch,
                 std::vector<std::size_t> left, const Vector3d& at, double length, double impatience,
                 double total_gain) {
@@ -151,7 +152,8 @@ TEST(FirstStop, StartsTourOfMinCost) {
   }
 }
 
-// On a line from 0, stops at 2 and -3: the short way first, unless nearly all gain is at -3.
+// Stops at 2 and -3 on a line, starting at 0: the nearer one is first, unless nearly all gain is at
+// -3.
 TEST(FirstStop, WeighsEarlyGainAgainstPathLength) {
   const std::vector<BatchView> views = {{{2, 0, 0}, {}}, {{-3, 0, 0}, {}}};
   const auto first = [&](double gain_at_2, double gain_at_3, double impatience) {

@@ -22,7 +22,7 @@ const geometry::View from = geometry::look_at({2, 0, 0}, {0, 0, 0});
 constexpr double infinity = std::numeric_limits<double>::infinity();
 const surfel::Admission anywhere = [](const geometry::View&) { return true; };
 
-/// What is known after one noisy scan from `viewpoint`.
+/// Known surface after one noisy scan from `viewpoint`.
 struct Known {
   explicit Known(const Vector3d& viewpoint) : coverage_model(0.005, {.isotropic = 0.01}) {
     const surfel::BlockImage image = surfel::make_block_image(
@@ -55,7 +55,7 @@ TEST(GainField, SeesOnlyTargetsThatFaceTheView) {
     surfels += field.is_patch(visible_target.target) ? 0 : 1;
   }
   EXPECT_GT(surfels, 100);
-  // From behind, the ball's measured half faces away.
+  // From behind, the measured half of the ball faces away.
   for (const surfel::VisibleTarget& visible_target :
        field.visible_targets(geometry::look_at({-2, 0, 0}, {0, 0, 0}))) {
     EXPECT_TRUE(field.is_patch(visible_target.target) ||
@@ -77,8 +77,8 @@ TEST(GainField, SeesNoTargetsBeyondMaxIncidence) {
   }
 }
 
-// Half a ball of radius 0.5 m and a little more is seen from 2 m: 1.2 m^2, whether it was news or
-// not.
+// From 2 m, slightly less than half of a ball of radius 0.5 m is visible: 1.2 m^2, whether it is
+// new or known.
 TEST(GainField, HasAreaOfAllObservedSurface) {
   for (const bool is_news : {true, false}) {
     const surfel::BlockImage image = surfel::make_block_image(
@@ -107,7 +107,7 @@ TEST(GainField, HasGainEqualToSumOfVisibleTargets) {
   EXPECT_NEAR(field.gain(view).area, sum, 1e-5 * sum);  // summed in single and double precision
 }
 
-// Seen from an empty cloud, what was measured already counts in full; the guesses do not count.
+// Relative to an empty cloud, measured surface counts in full. Predictions do not count.
 TEST(GainField, WeighsKnownSurfaceInFull) {
   const Known known({2, 0, 0});
   const surfel::GainSettings settings{.view_distance = 2.0};
@@ -119,7 +119,7 @@ TEST(GainField, WeighsKnownSurfaceInFull) {
     EXPECT_GT(field.targets().size(), max == 100 ? 50U : known.map.surfels().size() - 1);
     double weight = 0.0;
     for (const auto& target : field.targets()) weight += double{target.weight};
-    EXPECT_NEAR(weight, area, 1e-4 * area);  // nothing has lost trust
+    EXPECT_NEAR(weight, area, 1e-4 * area);  // no weights have been reduced
   }
 }
 
@@ -137,7 +137,7 @@ TEST(GainField, HasObservationHazardsOfCoveredFractions) {
   }
 }
 
-// What unknown space may hide counts for less, known surface in full.
+// Surface that unknown space may hide counts for less. Known surface counts in full.
 TEST(GainField, WeighsPredictionsByLineOfSightConfidence) {
   const Known known({2, 0, 0});
   surfel::LineOfSightModel line_of_sight_probability(0.3F);
@@ -166,7 +166,7 @@ TEST(GainField, WeighsPredictionsByLineOfSightConfidence) {
   EXPECT_LT(careful.gain(behind).predicted, 0.8 * hopeful.gain(behind).predicted);
 }
 
-// A small ball in front hides a part of a large one, whose surfels it must not see.
+// A small ball in front hides part of a large one. Hidden surfels must not be visible.
 TEST(GainField, OccludesFarSurfaceBehindNearSurface) {
   const std::vector<tests::Sphere> two = {{{0, 0, 0}, 0.5}, {{1.2, 0, 0}, 0.2}};
   const surfel::CoverageModel coverage_model(0.005, {.isotropic = 0.01});
@@ -183,15 +183,15 @@ TEST(GainField, OccludesFarSurfaceBehindNearSurface) {
   for (const surfel::VisibleTarget& visible_target :
        testing_support::not_empty(field.visible_targets(geometry::look_at(eye, {0, 0, 0})))) {
     const Vector3d p = field.targets()[visible_target.target].position.cast<double>();
-    if (p.x() > 0.8) continue;  // the small ball itself
+    if (p.x() > 0.8) continue;  // the small ball
     ++seen;
-    // Rays at less than 0.2 / 1.8 from the axis meet the small ball; two splats of tolerance.
+    // Rays at less than 0.2 / 1.8 from the axis hit the small ball. The tolerance is two splats.
     EXPECT_GT(std::hypot(p.y(), p.z()) / (eye.x() - p.x()), 0.111 - 2.0 * spacing / 2.5);
   }
   EXPECT_GT(seen, 50);
 }
 
-// Near a surface its surfels lie many pixels apart, and no ray passes between them for that.
+// Close to a surface, its surfels are many pixels apart, but no ray passes between them.
 TEST(GainField, OccludesPatchesBehindSurfaceAtShortDistance) {
   const Known known({2, 0, 0});
   std::vector<surfel::PredictedPatch> inside;
@@ -226,16 +226,16 @@ TEST(ViewSelector, SelectsViewOfMissingSurface) {
   const auto choice = choose(field, anywhere, infinity, {});
   ASSERT_TRUE(choice);
   EXPECT_NEAR(field.gain(choice->view).area, choice->gain, 1e-9);
-  // For the stop rule guesses count for less, what was seen too thinly in full.
+  // For the stop rule, predictions count for less and undersampled surface counts in full.
   const surfel::Gain gain = field.gain(choice->view);
   EXPECT_GE(choice->best_gain, gain.area - gain.predicted);
-  // Better than to look at the same half again from the same distance, 2 m before the surface.
+  // Better than observing the same half again from the same distance, 2 m in front of the surface.
   EXPECT_GT(choice->best_gain, field.gain(geometry::look_at({2.5, 0, 0}, {0, 0, 0})).area);
   EXPECT_EQ(choice->chances.size(), field.targets().size());
 }
 
-// Among the same candidates, wherever they are: who expects nothing of guesses takes the view that
-// covers most of what is known.
+// With the same candidates and no expected yield of predictions, the selected view covers most of
+// the known surface.
 TEST(ViewSelector, PrefersKnownSurfaceAtZeroPredictionYield) {
   const Known known({2, 0, 0});
   const surfel::GainField field = known.field();
@@ -261,8 +261,8 @@ TEST(ViewSelector, DoesNotDependOnThreadCount) {
   EXPECT_EQ(one->gain, four->gain);
 }
 
-// Every view is refused as soon as it is chosen, until there is none: with the memory of all
-// choices before, the same views and figures as with none.
+// Each view is rejected as soon as it is selected, until there are none. With and without a cache
+// of all previous selections, views and values are equal.
 TEST(ViewSelector, SelectsSameViewWithAndWithoutCache) {
   const Known known({2, 0, 0});
   const surfel::GainField field = known.field();
@@ -342,7 +342,7 @@ TEST(ViewSelector, CombinesCoverageOfEnRouteFrames) {
   }
 }
 
-// Of the best views by themselves it takes the one that yields most with its way.
+// Among the best views, the selection takes the one with the highest gain including its path.
 TEST(ViewSelector, IncludesGainOfEnRouteFrames) {
   const Known known({2, 0, 0});
   const surfel::GainField field = known.field();
@@ -365,8 +365,8 @@ TEST(ViewSelector, IncludesGainOfEnRouteFrames) {
   }
 }
 
-// Known answer: a line that moves along itself sweeps nothing; one that moves across itself sweeps
-// as much, whichever way round; and so does one that turns on the spot, by the angle times d.
+// Known cases: a line that moves along itself sweeps no area. Moving across itself in either
+// direction sweeps the same area. Rotating in place sweeps the angle times d.
 TEST(ViewSelector, ComputesCoverageOfSweptLines) {
   const Known known({2, 0, 0});
   const surfel::GainField field = known.field();
@@ -385,7 +385,7 @@ TEST(ViewSelector, ComputesCoverageOfSweptLines) {
   const double across = gain(begin, {from.position + 0.5 * aside, ahead});
   EXPECT_GT(across, 0.0);
   EXPECT_NEAR(gain({from.position + 0.5 * aside, ahead}, begin), across, 1e-6 * across);
-  // Both at once: to the right the turn to the left takes away what the way brings.
+  // Combined motion: when moving to the right, a rotation to the left reduces the swept area.
   constexpr double turn = 0.25;
   const Vector3d turned(-std::cos(turn), -std::sin(turn), 0);
   EXPECT_LT(gain(begin, {from.position + d * turn * aside, turned}), 0.2 * across);

@@ -9,10 +9,10 @@ namespace {
 
 using Code = volumetric::OccupancyStates::Code;
 
-// Analytic: log-odds are kept in single precision, so probabilities are right to about 1e-7.
+// Log-odds have single precision, so probabilities are accurate to about 1e-7.
 constexpr double single = 1e-6;
 
-/// Occupancy after `count` equal measurements, in closed form.
+/// Returns the occupancy after `count` equal measurements, in closed form.
 double occupancy_after(int count, double each, double clamping_min, double clamping_max) {
   const double odds = std::pow(each / (1.0 - each), count);
   return std::min(std::max(odds / (1.0 + odds), clamping_min), clamping_max);
@@ -52,7 +52,7 @@ TEST(OccupancyStates, HaveEntropyOfTheirOccupancy) {
   EXPECT_EQ(untouched.entropy, std::log(2.0));
   Code code = volumetric::OccupancyStates::untouched;
   for (int count = 0; count < 7; ++count) code = states.after_miss(code);
-  EXPECT_NEAR(states.state(code).entropy, 0.366925, 1e-6);  // H(0.12), by hand
+  EXPECT_NEAR(states.state(code).entropy, 0.366925, 1e-6);  // H(0.12), computed by hand
 }
 
 TEST(OccupancyStates, StartFromPriorWhenShadowIsMeasured) {
@@ -65,7 +65,7 @@ TEST(OccupancyStates, StartFromPriorWhenShadowIsMeasured) {
   }
 }
 
-// When the table is full, a value is off by at most the gap between numbered ones.
+// With a full table, the error of a value is at most the gap between stored values.
 TEST(OccupancyStates, ReplaceNewValuesByNearestWhenTableIsFull) {
   const std::size_t values = 30;
   volumetric::OccupancyStates states({}, volumetric::OccupancyStates::deepest_shadow + 1 + values);

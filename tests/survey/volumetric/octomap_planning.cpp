@@ -12,7 +12,7 @@ octomap::point3d octomap_point(const Eigen::Vector3f& p) { return {p.x(), p.y(),
 
 double entropy(double p) { return -p * std::log(p) - (1.0 - p) * std::log(1.0 - p); }
 
-/// A voxel of a ray: the prior where nothing was measured.
+/// A voxel on a ray. Unmeasured voxels have the prior.
 struct RayVoxel {
   double p = 0.5;
   bool exists = false;
@@ -59,7 +59,7 @@ double reward(double x, double a) {
          std::pow(a - 1.0, 3);
 }
 
-/// What the metrics that are no plain sums keep over the rays of a view.
+/// Sums over the rays of a view for metrics that are not plain sums.
 struct ViewSums {
   double sum = 0.0, voxels = 0.0;
   double occupied = 0.0, shadowed = 0.0, unobserved = 0.0;
@@ -143,7 +143,7 @@ void ShadowTree::insert(const Eigen::Vector3f& origin, std::span<const Eigen::Ve
     computeRayKeys(octomap_point(point), octomap_point(end), ray);
     int depth = 0;
     for (const octomap::OcTreeKey& key : ray) {
-      if (depth++ == 0) continue;  // the surface's own voxel
+      if (depth++ == 0) continue;  // voxel of the surface itself
       ShadowNode* node = search(key);
       if (!node) {
         node = updateNode(key, false, true);

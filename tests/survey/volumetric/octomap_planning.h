@@ -1,6 +1,6 @@
-/// The volumetric planners' map and gains once more, on OctoMap and without any thought of speed:
-/// every ray is cast, then its voxels are listed, then each is looked up from the root of the tree.
-/// An independent twin for tests, and what benchmarks compare with.
+/// Reference implementation of the volumetric planners' map and gains on OctoMap, without
+/// optimisations. Each ray is cast, its voxels are listed, and each voxel is looked up from the
+/// root of the tree. Used in tests and benchmarks.
 #pragma once
 
 #include <span>
@@ -15,10 +15,10 @@
 
 namespace skycap::tests {
 
-/// A voxel that may also be in a shadow.
+/// Voxel that may also be in a shadow.
 class ShadowNode : public octomap::OcTreeNode {
  public:
-  int shadow_depth = 0;  ///< cells behind the surface; 0: in no shadow
+  int shadow_depth = 0;  ///< number of cells behind the surface; 0: not in a shadow
   bool is_measured = true;
 };
 
@@ -29,8 +29,9 @@ class ShadowTree : public octomap::OccupancyOcTreeBase<ShadowNode> {
   ShadowTree* create() const override { return new ShadowTree(resolution, shadow_length_); }
 
   void insert(const Eigen::Vector3f& origin, std::span<const Eigen::Vector3f> points);
-  /// The gain of a view. The published evaluation code casts each ray, and then takes the voxels on
-  /// the way to the centre of the voxel that it met; with `aims_at_centres` this does the same.
+  /// Returns the gain of a view. The published evaluation code casts each ray, and then uses the
+  /// voxels on the path to the centre of the voxel that was hit. `aims_at_centres` selects this
+  /// behaviour.
   double gain(survey::volumetric::VolumetricMetric metric, const geometry::View& view,
               const std::vector<Eigen::Vector3d>& directions, double depth,
               bool aims_at_centres) const;

@@ -26,7 +26,7 @@ const double ln_2 = std::log(2.0);
 
 double entropy(double p) { return -p * std::log(p) - (1.0 - p) * std::log(1.0 - p); }
 
-// Log-odds are single precision: probabilities, and so gains, are right to about 1e-7.
+// Log-odds have single precision, so probabilities and gains are accurate to about 1e-7.
 constexpr double single = 1e-6;
 
 TEST(RayPattern, HasPublishedNumberOfRays) {
@@ -69,7 +69,7 @@ struct Scene {
   double distance;
 };
 
-/// One scan of a sphere, and another view far from it on the same orbit.
+/// A scan of a sphere, and another view far from it on the same orbit.
 class AfterOneScan : public testing::TestWithParam<Scene> {
  protected:
   void SetUp() override {
@@ -91,15 +91,15 @@ class AfterOneScan : public testing::TestWithParam<Scene> {
   std::optional<volumetric::VolumetricMap> map_;
 };
 
-// Before a view in unmeasured space the weights are a geometric series of 1/2, so the sum is
-// 2 ln 2 a ray, whatever lies behind: 1490.27 for the D435's rays, 14761.3 for the building's.
+// In unmeasured space the weights are a geometric series of 1/2. The sum is therefore 2 ln 2 per
+// ray, independent of what is behind: 1490.27 for the D435's rays, 14761.3 for the building's.
 TEST_P(AfterOneScan, DistinguishesViewsOnlyByProximityAndArea) {
   const double rays = static_cast<double>(volumetric::ray_directions(GetParam().camera, {}).size());
   const double distance = GetParam().distance;
   for (const Vector3d& towards :
        {Vector3d(-1, 0, 0), Vector3d(0, 1, 0), Vector3d(0.1, 0.5, -0.8)}) {
     const View view = look_at(distance * towards.normalized(), Vector3d::Zero());
-    // Sums of a thousand to ten thousand equal numbers: n eps / 2 relative.
+    // Sums of a thousand to ten thousand equal numbers: relative error n eps / 2.
     EXPECT_NEAR(gain(occlusion_aware, view), rays * 2.0 * ln_2, rays * rays * 1e-16);
     EXPECT_NEAR(gain(unobserved_voxel, view), rays * 2.0 * ln_2, rays * rays * 1e-16);
     EXPECT_EQ(gain(rear_side_voxel, view), 0.0);
@@ -123,7 +123,7 @@ INSTANTIATE_TEST_SUITE_P(Sensors, AfterOneScan,
 /// A row of voxels along x, 0.1 m wide, and one ray through them.
 class OneRay : public testing::Test {
  protected:
-  /// `hits` measurements of voxel 20 from voxel 10.
+  /// Measures voxel 20 from voxel 10 `hits` times.
   void measure(int hits) {
     for (int i = 0; i < hits; ++i) map_.insert(centre(10), std::vector{centre(20)});
   }
@@ -131,7 +131,7 @@ class OneRay : public testing::Test {
     return {0.1F * static_cast<float>(voxel) + 0.05F, 0.05F, 0.05F};
   }
 
-  /// Gain of the ray from voxel `from` through all voxels to `to`.
+  /// Returns the gain of the ray from voxel `from` through all voxels to `to`.
   double gain(volumetric::VolumetricMetric metric, int from, int to,
               const volumetric::GainSettings& settings = {}) const {
     const Vector3d position = centre(from).cast<double>();
@@ -145,16 +145,17 @@ class OneRay : public testing::Test {
 
 TEST_F(OneRay, CountsRearSideFromBehindWhenSurfaceIsOccupied) {
   measure(1);
-  EXPECT_EQ(gain(rear_side_voxel, 25, 15), 0.0);  // p = 0.7 is not occupied yet
+  EXPECT_EQ(gain(rear_side_voxel, 25, 15), 0.0);  // p = 0.7 does not count as occupied
   measure(1);
   EXPECT_EQ(gain(rear_side_voxel, 25, 15), 1.0);
-  EXPECT_EQ(gain(rear_side_voxel, 10, 25), 1.0);  // its front is not free before four passes
+  // Voxels in front of it are only free after four passes.
+  EXPECT_EQ(gain(rear_side_voxel, 10, 25), 1.0);
   measure(2);
   EXPECT_EQ(gain(rear_side_voxel, 10, 25), 0.0);
   EXPECT_EQ(gain(rear_side_voxel, 25, 15), 1.0);
 }
 
-// Five unmeasured voxels and then the surface, seen twice: V = 1, 1/2, ..., 1/32.
+// Five unmeasured voxels and then the surface, measured twice: V = 1, 1/2, ..., 1/32.
 TEST_F(OneRay, SumsRearSideEntropyOfUncertainVoxelsAndSurface) {
   measure(2);
   const double p = 0.49 / (0.49 + 0.09);
@@ -183,7 +184,7 @@ TEST_F(OneRay, WeighsOcclusionAwareGainByPassedOccupancies) {
     for (int i = 0; i < 10; ++i) expected += weight * entropy(0.12), weight *= kept;
     const double with_surface = expected + weight * entropy(0.97);
     EXPECT_NEAR(gain(occlusion_aware, 10, 25, settings), with_surface, single);
-    EXPECT_EQ(gain(unobserved_voxel, 10, 25, settings), 0.0);  // nothing uncertain
+    EXPECT_EQ(gain(unobserved_voxel, 10, 25, settings), 0.0);  // no uncertain voxels
   }
 }
 
@@ -192,17 +193,18 @@ TEST_F(OneRay, WeighsUnobservedVoxelsByAllVoxelsBeforeThem) {
   map_.insert({2.05F, 0.05F, 1.05F}, std::vector<Vector3f>{{2.05F, 0.05F, -1.05F}});
   // Six untouched voxels 0 to 5, uncertain only; the ray ends there.
   EXPECT_NEAR(gain(unobserved_voxel, 0, 5), ln_2 * (2.0 - 1.0 / 32.0), 1e-12);
-  // Ten untouched ones, then free space that adds nothing.
+  // Ten untouched voxels, then free space without gain.
   EXPECT_NEAR(gain(unobserved_voxel, 0, 15), ln_2 * (2.0 - 1.0 / 512.0), 1e-12);
 }
 
 TEST_F(OneRay, CountsProximityByShadowDepth) {
   measure(1);
-  // From behind: depths 6, 5, ..., 1 and the ceiling 14; the shadow's end voxel 27 is not marked.
+  // From behind: depths 6, 5, ..., 1 and the ceiling 14. The end voxel 27 of the shadow is not
+  // marked.
   double expected = 0.0;
   for (int depth = 1; depth <= 6; ++depth) expected += 14.0 - depth;
   EXPECT_NEAR(gain(proximity_count, 35, 15), expected, 1e-9);
-  EXPECT_EQ(gain(proximity_count, 10, 35), 0.0);  // the surface is before them
+  EXPECT_EQ(gain(proximity_count, 10, 35), 0.0);  // the surface is in front of them
 }
 
 TEST_F(OneRay, AveragesEntropyOfRaysThatEndOnSurface) {
@@ -214,13 +216,13 @@ TEST_F(OneRay, AveragesEntropyOfRaysThatEndOnSurface) {
 
 TEST_F(OneRay, ComputesAreaFactorFromFirstVoxelMet) {
   measure(5);
-  // Only occupied votes: the share is 1, wanted is 0.2, and the reward is zero for both.
+  // Only occupied voxels: the fraction is 1, the target is 0.2, and the reward is zero for both.
   EXPECT_NEAR(gain(area_factor, 10, 25), 0.0, 1e-12);
-  // Unobserved only.
+  // Only unobserved voxels.
   EXPECT_EQ(gain(area_factor, 10, 15), 0.0);
 }
 
-// Two rays: one meets the surface from free space, one meets nothing.
+// Two rays: one hits the surface from free space, one hits nothing.
 TEST_F(OneRay, ComputesAreaFactorOfAllRaysOrHittingRays) {
   measure(5);
   const View view{centre(10).cast<double>(), Vector3d::UnitX()};
@@ -233,7 +235,7 @@ TEST_F(OneRay, ComputesAreaFactorOfAllRaysOrHittingRays) {
               1e-12);
 }
 
-// Independent twin on OctoMap. The sums are taken in another order: n eps for a thousand rays of
+// Independent reference on OctoMap. The sums have a different order: n eps for a thousand rays of
 // some hundred voxels.
 TEST(InformationGain, MatchesOctoMapReference) {
   const double resolution = 0.04;

@@ -37,7 +37,7 @@ octomap::OcTree octomap_with_the_same_model(double resolution) {
   return tree;
 }
 
-/// A noisy depth camera around two spheres, one of which hides part of the other.
+/// Returns noisy depth camera scans around two spheres, one of which hides part of the other.
 std::vector<Scan> recorded_scans() {
   const Camera camera({.width = 212, .height = 120});
   const std::vector<tests::Sphere> spheres{{{0.0, 0.0, 0.5}, 0.4}, {{0.5, 0.2, 0.4}, 0.2}};
@@ -54,7 +54,7 @@ std::vector<Scan> recorded_scans() {
 
 class OctoMapComparison : public testing::TestWithParam<double> {};
 
-// Independent twin: same voxels, same values, to the last bit.
+// Independent reference: the same voxels and values, to the last bit.
 TEST_P(OctoMapComparison, HasSameVoxelsAfterEveryScan) {
   const double resolution = GetParam();
   volumetric::VolumetricMap map(resolution, 18.0 * resolution);
@@ -95,7 +95,7 @@ TEST_P(OctoMapComparison, HasSameVoxelsAfterEveryScan) {
 
 INSTANTIATE_TEST_SUITE_P(Resolutions, OctoMapComparison, testing::Values(0.05, 0.034));
 
-/// The voxels that a walk over bricks and their voxels passes.
+/// Returns the voxels that a walk over bricks and their voxels passes.
 std::vector<volumetric::VoxelIndex> passed(const Vector3f& origin, const Vector3f& end,
                                            double resolution) {
   std::vector<volumetric::VoxelIndex> voxels;
@@ -116,7 +116,8 @@ std::vector<volumetric::VoxelIndex> passed(const Vector3f& origin, const Vector3
   return voxels;
 }
 
-/// Segments in all directions, along an axis, in a plane, and through edges and corners of voxels.
+/// Returns segments in all directions, along an axis, in a plane, and through edges and corners of
+/// voxels.
 std::vector<std::pair<Vector3f, Vector3f>> segments() {
   const auto points = tests::random_points(300, 2.6, 5);
   std::vector<std::pair<Vector3f, Vector3f>> segments{
@@ -132,7 +133,7 @@ std::vector<std::pair<Vector3f, Vector3f>> segments() {
   return segments;
 }
 
-// Brute force: every passed voxel meets the segment, and neighbours share a face.
+// Brute force: each passed voxel intersects the segment, and consecutive voxels share a face.
 TEST(VoxelWalk, PassesAdjacentVoxelsThatIntersectSegment) {
   const double resolution = 0.1;
   const auto points = tests::random_points(200, 1.3, 4);
@@ -160,8 +161,8 @@ TEST(VoxelWalk, PassesAdjacentVoxelsThatIntersectSegment) {
   }
 }
 
-// Twin: the one walks four rays at a time from voxel to voxel over the whole segments, and the rest
-// one by one; the other begins anew in every brick.
+// Reference: the scan walks four rays at a time over the whole segments and the rest one by one.
+// The other walk starts again in each brick.
 TEST(VoxelWalk, PassesSameVoxelsAsScan) {
   for (const double resolution : {0.1, 0.06}) {
     for (const auto& [origin, end] : segments()) {
@@ -236,7 +237,7 @@ TEST(VoxelWalk, PassesOneRowAlongAxisInBothDirections) {
   }
 }
 
-/// What lies along +x at the centres of voxels of 0.1 m.
+/// Returns the state of a voxel on the +x axis, at the centre of a voxel of 0.1 m.
 volumetric::VoxelState state_on_x(const volumetric::VolumetricMap& map, int voxel) {
   return map.state_at({0.1F * static_cast<float>(voxel) + 0.05F, 0.05F, 0.05F});
 }
@@ -252,7 +253,7 @@ TEST(VolumetricMap, MarksShadowsWithDepthInVoxels) {
     EXPECT_EQ(state_on_x(map, 10 + depth).kind, volumetric::VoxelKind::shadowed);
     EXPECT_EQ(state_on_x(map, 10 + depth).shadow_depth, depth);
   }
-  // The shadow ends at 1.55 m, in voxel 15, and its last voxel is not marked.
+  // The shadow ends at 1.55 m in voxel 15, and its last voxel is not marked.
   EXPECT_EQ(state_on_x(map, 15).kind, volumetric::VoxelKind::untouched);
 }
 
@@ -260,7 +261,8 @@ TEST(VolumetricMap, KeepsMinShadowDepthUntilVoxelIsMeasured) {
   volumetric::VolumetricMap map(0.1, 0.5);
   map.insert(at_origin, std::vector{ten_ahead});
   map.insert({2.45F, 0.05F, 0.05F}, std::vector<Vector3f>{{1.55F, 0.05F, 0.05F}});
-  // Seen from the other side: 14 is one behind the new surface at 15, 11 is four behind it.
+  // Measured from the other side: 14 is one voxel behind the new surface at 15, 11 is four behind
+  // it.
   EXPECT_EQ(state_on_x(map, 14).shadow_depth, 1);
   EXPECT_EQ(state_on_x(map, 11).shadow_depth, 1);
   EXPECT_EQ(state_on_x(map, 12).shadow_depth, 2);

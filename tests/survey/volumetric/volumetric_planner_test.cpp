@@ -36,7 +36,7 @@ volumetric::VolumetricConfig config_for(volumetric::VolumetricMetric metric) {
   return config;
 }
 
-/// The views of a survey of two spheres, until no candidate is left.
+/// Returns the views of a survey of two spheres, until no candidates are left.
 std::vector<View> surveyed(const volumetric::VolumetricConfig& config) {
   volumetric::VolumetricPlanner planner(config, camera);
   std::vector<View> views;
@@ -88,8 +88,8 @@ TEST(SphereViews, LookAtCentreFromSphere) {
   }
 }
 
-// Uniform on a sphere each coordinate is uniform (Archimedes), so its mean is 0 and its variance
-// 1/3. Five standard deviations of both for 20,000 views.
+// On a sphere with uniform density, each coordinate is uniform (Archimedes) with mean 0 and
+// variance 1/3. The tolerance is five standard deviations for 20,000 views.
 TEST(SphereViews, AreUniformlyDistributed) {
   const std::size_t count = 20'000;
   Vector3d mean = Vector3d::Zero(), squares = Vector3d::Zero();
@@ -122,11 +122,11 @@ TEST(VolumetricPlanner, VisitsEveryCandidateOnce) {
   }
 }
 
-// Where all gains tie, as OA's and UV's do between unvisited views, the way decides: the survey is
-// the nearest-neighbour tour of the candidates.
+// If all gains are equal, as for OA and UV between unvisited views, the path length decides. The
+// survey is then the nearest-neighbour tour of the candidates.
 TEST(VolumetricPlanner, SelectsNearestCandidateWhenGainsTie) {
   volumetric::VolumetricConfig config = config_for(rear_side_voxel);
-  config.settings.rays = {1.0, 0.0, 0.01};  // one ray past the scene: no gain anywhere
+  config.settings.rays = {1.0, 0.0, 0.01};  // one ray that misses the scene: zero gain everywhere
   const std::vector<View> views = surveyed(config);
   for (std::size_t i = 1; i < views.size(); ++i) {
     const double ray = (views[i].position - views[i - 1].position).norm();
@@ -188,7 +188,7 @@ TEST(VolumetricPlanner, InsertsDownsampledScansWhenConfigured) {
     config.settings.downsampled = downsampled;
     volumetric::VolumetricPlanner planner(config, camera);
     planner.next_view(scan);
-    planner.next_view(scan);  // adds no kept point
+    planner.next_view(scan);  // adds no points to the cloud
     EXPECT_EQ(planner.map().state_at(surface).kind,
               downsampled ? volumetric::VoxelKind::uncertain : volumetric::VoxelKind::occupied);
   }
@@ -198,7 +198,7 @@ TEST(VolumetricPlanner, CarvesNoReturnPixelsWhenConfigured) {
   const View view = look_at({2.0, 0.0, 0.0}, Vector3d::Zero());
   const auto scan = tests::scan_spheres({{}}, camera, view);
   volumetric::VolumetricConfig config = config_for(occlusion_aware);
-  const Eigen::Vector3f beside(0.6F, 0.7F, 0.0F);  // seen past the sphere
+  const Eigen::Vector3f beside(0.6F, 0.7F, 0.0F);  // visible next to the sphere
   for (const bool carves : {false, true}) {
     config.settings.carve_no_returns = carves;
     volumetric::VolumetricPlanner planner(config, camera);

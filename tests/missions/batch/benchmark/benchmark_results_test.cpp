@@ -19,7 +19,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// A survey of three views: 0, 1 and 3 m, after 1, 2 and 4 s.
+/// Returns a survey of three views at 0, 1 and 3 m, after 1, 2 and 4 s.
 batch::Trial trial(double a, double b, double c) {
   batch::Trial trial;
   trial.views = 3;
@@ -36,7 +36,7 @@ batch::Trial trial(double a, double b, double c) {
 TEST(CoverageCurve, AveragesStepsAtEvenDistances) {
   const std::vector<batch::Trial> trials{trial(0.2, 0.4, 0.8), trial(0.4, 0.4, 0.6)};
   const auto curve =
-      batch::coverage_curve(trials, batch::CurveAxis::distance, 7);  // every half metre
+      batch::coverage_curve(trials, batch::CurveAxis::distance, 7);  // sampled every 0.5 m
   ASSERT_EQ(curve.size(), 7U);
   EXPECT_DOUBLE_EQ(curve[1].x, 0.5);
   EXPECT_DOUBLE_EQ(curve[1].mean, 0.3);
@@ -94,8 +94,8 @@ TEST(TargetFigures, CountViewsAndDistancesUntilTargetIsObserved) {
   EXPECT_EQ(figures.targets, 4U);
   EXPECT_DOUBLE_EQ(figures.share_by_views[0], 0.5);
   EXPECT_DOUBLE_EQ(figures.share_by_views[1], 0.25);
-  EXPECT_DOUBLE_EQ(figures.share_by_views.back(), 0.25);  // ten or more
-  EXPECT_DOUBLE_EQ(figures.share_by_distance[0], 0.25);   // below 0.5 m
+  EXPECT_DOUBLE_EQ(figures.share_by_views.back(), 0.25);  // bin of ten or more views
+  EXPECT_DOUBLE_EQ(figures.share_by_distance[0], 0.25);   // bin below 0.5 m
   EXPECT_DOUBLE_EQ(figures.share_by_distance[1], 0.5);
   EXPECT_DOUBLE_EQ(figures.share_by_distance.back(), 0.75);
 }
@@ -125,7 +125,7 @@ TEST(ViewFigures, AverageOverTrials) {
   EXPECT_DOUBLE_EQ(figures.coverage.mean, 0.25);
 }
 
-// Table 1 as printed.
+// Table 1 of the paper.
 TEST(PaperResults, MatchPublishedTables) {
   const auto dragon = batch::paper_result("dragon", "pc");
   ASSERT_TRUE(dragon);
@@ -158,7 +158,8 @@ TEST(BenchmarkReport, WritesRatiosToPaperResults) {
   EXPECT_DOUBLE_EQ(see["views"]["ratio_to_paper"], 0.05);
   EXPECT_DOUBLE_EQ(see["coverage"]["mean"], 0.7);
   EXPECT_DOUBLE_EQ(see["coverage_visible"]["mean"], 0.8);
-  EXPECT_TRUE(json["results"][1]["views"]["half_width_95"].is_null());  // one trial
+  // a single trial has no confidence interval.
+  EXPECT_TRUE(json["results"][1]["views"]["half_width_95"].is_null());
 }
 
 TEST(BenchmarkReport, WritesBothTablesAsMarkdown) {
@@ -173,7 +174,8 @@ TEST(BenchmarkReport, ReportsEffortToReachCoverageOfSee) {
   std::vector<batch::BenchmarkCell> cells = two_cells();
   cells[1].trials = {trial(0.1, 0.75, 0.9), trial(0.1, 0.2, 0.3)};
   const std::string text = batch::report_markdown(cells);
-  // SEE ends at 70 % after 3 views and 3 m; one of two surveys with OA is there at view 2, 1 m.
+  // SEE reaches 70% after 3 views and 3 m. One of two surveys with OA reaches it at view 2, after 1
+  // m.
   EXPECT_THAT(text,
               HasSubstr("| SEE here, 70.0 | OA | 1 of 2 | 2.0, 0.67× | 2, 0.50× | 1.0, 0.33× |"));
   EXPECT_THAT(text, HasSubstr("| the paper's SEE++, 97.1 | OA | 0 of 2 | - | - | - |"));
@@ -214,12 +216,12 @@ TEST(TrialJson, RejectsInvalidTrials) {
   for (const char* text : {"", "[1, 2]"}) {
     EXPECT_THAT(error_message(text), HasSubstr("is not a trial: ")) << text;
   }
-  // Of each field: that it is missing, and that it is of another type.
+  // Each field is first missing, then of another type.
   const std::string whole = batch::trial_json(trial(0.5, 0.25, 0.7));
   const auto fields = nlohmann::json::parse(whole);
   ASSERT_GE(fields.size(), 15U);
   for (const auto& [name, value] : fields.items()) {
-    if (name == "stop_reason" || name == "flown_s") continue;  // another message; not read
+    if (name == "stop_reason" || name == "flown_s") continue;  // other error message; not read
     nlohmann::json corrupted = fields;
     corrupted.erase(name);
     EXPECT_THAT(error_message(corrupted.dump()), HasSubstr("'" + name + "'"));
@@ -303,7 +305,7 @@ TEST(Curves, AreLinesForSpreadsheetsAndADrawing) {
   EXPECT_THAT(batch::curves_csv(cells, batch::Times::left_out),
               testing::Not(HasSubstr("planning_time_s")));
   const std::string svg = batch::curves_svg(cells);
-  // Three diagrams of two curves, and two lines of the legend; nobody has flown.
+  // Three charts with two curves each, and two lines of the legend. There are no flights.
   std::size_t curves = 0;
   for (std::size_t at = svg.find("class=\"curve\""); at != std::string::npos;
        at = svg.find("class=\"curve\"", at + 1)) {

@@ -15,7 +15,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// Student's t for 4 degrees of freedom is 2.776 at 97.5 % (any table).
+// Student's t for 4 degrees of freedom is 2.776 at 97.5% (standard tables).
 TEST(Statistic, MatchesHandComputedExample) {
   const batch::Statistic s = batch::statistic({2, 4, 4, 6, 9});
   EXPECT_DOUBLE_EQ(s.mean, 5.0);
@@ -74,7 +74,7 @@ TEST(Trials, ReportsPaperResults) {
   EXPECT_THAT(table, HasSubstr("22.3"));
 }
 
-// Table 1, where the mission is one of its models and names no other publication.
+// Table 1 is used if the mission is one of its models and does not set paper values itself.
 TEST(Trials, UsesPaperRowOfPlanner) {
   const config::MissionSetup mission =
       mission_called("bunny", "planner: {name: see}\npaper: {coverage: 0.5}\n");

@@ -1,4 +1,4 @@
-// What a campaign file comes to, and what is refused.
+// Contents of a campaign and rejected campaign files.
 #include "missions/batch/campaign/campaign_file.h"
 
 #include <string>
@@ -79,7 +79,7 @@ TEST(Campaign, AppendsRunsWhenSeedsAreAdded) {
   EXPECT_THAT(more.text(), testing::StartsWith(few.text()));
 }
 
-// Every item of a range belongs to one entry, and comes up once.
+// Each run of a range belongs to one entry and occurs once.
 TEST(Campaign, DividesRangesAmongEntries) {
   const Manifest manifest(parse_campaign(two_by_two, "c.yaml"));
   for (std::size_t first = 0; first < manifest.size(); ++first) {
@@ -98,7 +98,7 @@ TEST(Campaign, DividesRangesAmongEntries) {
   }
 }
 
-// Property: a value written in one line and read again is the value.
+// Property: a value that is written in one line and read again is unchanged.
 TEST(Campaign, WritesYamlValuesUnchanged) {
   for (const char* value :
        {"1", "-2.5e-3", "'7'", "true", "see++", "'a, b]: \"c\" # d'", "builtin:teapot",
@@ -153,7 +153,7 @@ TEST(Campaign, RejectsMoreRunsThanMaximum) {
               HasSubstr("exceeds the limit of 1000000"));
 }
 
-// A wrong value is known when a mission is read with it; the message says where it stands.
+// Invalid values are detected when a mission is read with them. The message contains their line.
 TEST(Campaign, NamesLineOfInvalidChanges) {
   const CampaignFile file =
       parse_campaign("missions: [a.yaml]\nvariants:\n  v:\n    planner.density: much\n", "c.yaml");

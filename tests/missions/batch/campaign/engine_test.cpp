@@ -1,4 +1,4 @@
-// Which items an engine's tasks run, and the jobs they are started by.
+// Runs of a scheduler's tasks, and the job scripts that start them.
 #include <map>
 #include <string>
 #include <vector>
@@ -32,7 +32,7 @@ std::string rejection_message(const std::string& index, const Environment& envir
   return "";
 }
 
-// The first and the eighth task of each, as its manual numbers them.
+// First and eighth task of each scheduler, numbered as in its manual.
 TEST(TaskIndex, FollowsNumberingOfEachScheduler) {
   const auto task = [](const std::string& engine, const char* variable, const char* value) {
     const Environment environment = make_environment({{variable, value}});
@@ -64,7 +64,7 @@ TEST(TaskIndex, RejectsInvalidIndices) {
               HasSubstr("SLURM_ARRAY_TASK_ID and PARALLEL_SEQ are both set; use --index slurm"));
 }
 
-// Property: the tasks of a job together have each item once, whatever the chunk.
+// Property: the tasks of a job contain each run once, for any chunk size.
 TEST(TaskIndex, AssignsEachRunToOneTask) {
   for (std::size_t items = 1; items <= 30; ++items) {
     for (std::size_t chunk = 1; chunk <= items + 2; ++chunk) {
@@ -104,7 +104,7 @@ TEST(SchedulerJob, SplitsRunsBySchedulerLimits) {
   EXPECT_THAT(describe_split(EngineName::parallel, request(7)), ElementsAre(7, 1));
 }
 
-// A shell is the oracle: it reads the words back.
+// A shell parses the quoted arguments and prints them.
 TEST(SchedulerJob, QuotesShellArgumentsInScripts) {
   const std::string script =
       job_script("t", {}, {"printf", "<%s>", "a b", "it's", "$HOME `x` \\ \"q\"", "-n", ""});

@@ -1,4 +1,4 @@
-// From one map to surveys of its buildings, and one certified flight of all of them.
+// From one map to surveys of its buildings and one verified flight for all of them.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -27,7 +27,8 @@ using testing::HasSubstr;
 using testing_support::Cube;
 using tests::read_content;
 
-/// Buildings of 10 m in UTM 32, feet at 380 m and so much elsewhere, as CityJSON.
+/// Returns a CityJSON map with 10 m buildings in UTM 32. Their bases are at 380 m plus the z
+/// offset.
 std::string town(const std::vector<Vector3d>& positions) {
   json town = {{"type", "CityJSON"},
                {"version", "1.0"},
@@ -56,7 +57,7 @@ std::string town(const std::vector<Vector3d>& positions) {
   return town.dump();
 }
 
-/// Two that share a wall, one by itself, and one that is no target.
+/// Two buildings that share a wall, a detached one, and one that is not a target.
 const std::vector<Vector3d> positions{{0, 0, 0}, {10, 0, 0}, {60, 0, 0}, {60, 30, 0}};
 
 constexpr const char* few_views =
@@ -106,7 +107,7 @@ TEST_F(District, PlansSurveysAndFlightWithOneCommand) {
   EXPECT_THAT(read_content(out() / "targets.csv"), HasSubstr("house_0_and_1,2,3,"));
 }
 
-// By the file as an autopilot reads it, in the space as it truly is: all buildings, the ground.
+// Checks the file as an autopilot reads it against the ground truth: all buildings and the ground.
 TEST_F(District, VerifiesRouteFilesAgainstAllBuildings) {
   ASSERT_EQ(run({"--no-report"}).exit_code, 0);
   const json flight = results().at("flight");
@@ -155,8 +156,8 @@ TEST_F(District, CutsOutSurroundingsOfEachTarget) {
   EXPECT_THAT(site, testing::Not(HasSubstr("house_5")));
 }
 
-// A neighbour stands in the scene that a target's sensor sees; what it sees free up to the boxes of
-// others is kept for the flight of all. A target by itself needs neither box.
+// The scene of a target contains its neighbour. Free space that its survey observes in the boxes of
+// other targets is kept for the common flight. A detached target needs no such box.
 TEST_F(District, KeepsUnknownBoxesOfNeighbouringTargets) {
   folder_.write("town.city.json", town({{0, 0, 0}, {18, 0, 0}, {500, 0, 0}}));
   write("map: town.city.json\nvertical: ellipsoid\n");
@@ -201,7 +202,7 @@ TEST_F(District, RequiresTerrainOnSlope) {
               HasSubstr("differ by 7.0 m, and the ground between the targets is unknown"));
 }
 
-/// Cells of 6 m whose ground rises from 380 m in the west to 387 m in the east.
+/// Returns terrain in cells of 6 m that rises from 380 m in the west to 387 m in the east.
 std::string rising_ground() {
   constexpr int cells = 60;
   std::string row;
@@ -241,7 +242,7 @@ TEST_F(District, RejectsPadInsideBuilding) {
     const auto at = mission.find(key + ": ") + key.size() + 2;
     return mission.substr(at, mission.find(' ', at) - at);
   };
-  // The middle of the district is beside everything; that of the first house is not.
+  // The centre of the district is next to all targets; the centre of the first house is not.
   write(map + "targets: {id: [house_0]}\n");
   ASSERT_EQ(run({"--list"}).exit_code, 0);
   const std::string house = read_content(out() / "flights" / "pad_1.yaml");

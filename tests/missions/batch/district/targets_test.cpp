@@ -1,4 +1,4 @@
-// What a district's buildings are: their outlines, their groups, the models that are cut out.
+// Outlines and groups of the buildings in a district, and the models that are cut out.
 #include "missions/batch/district/targets.h"
 
 #include <fstream>
@@ -45,7 +45,7 @@ TEST(Outline, IsBaseOfBox) {
 TEST(Outline, HasTwoRingsForTwoBoxes) {
   geometry::Mesh mesh = box({0, 0, 0}, {2, 2, 5});
   append(mesh, box({5, 0, 0.2}, {7, 2, 5}));
-  append(mesh, box({9, 0, 3}, {11, 2, 5}));  // stands on nothing
+  append(mesh, box({9, 0, 3}, {11, 2, 5}));  // has no support below it
   EXPECT_EQ(compute_outline(mesh).size(), 2U);
 }
 
@@ -69,7 +69,7 @@ TEST(Groups, JoinsObjectsWithinMergeDistance) {
   EXPECT_EQ(grouped(row, 0.0).size(), 4U);
 }
 
-// A street of houses that share walls is not one survey.
+// A row of terraced houses is divided into several surveys.
 TEST(Groups, LimitsGroupSize) {
   std::vector<site_data::Object> street;
   street.reserve(20);

@@ -1,8 +1,10 @@
-// The autopilot of the tests as a program, to fly a live survey by hand: real time, no faults.
+// The autopilot of the tests as a program, for manual tests of live surveys in real time, without
+// faults.
 //
-//     test_autopilot MISSION PORT
+// test_autopilot MISSION PORT
 //
-// sends to udp:127.0.0.1:PORT until its vehicle, which stands on the mission's pad, has landed.
+// It sends to udp:127.0.0.1:PORT. Its vehicle starts on the mission's pad. The program ends after
+// the landing.
 #include <filesystem>
 #include <iostream>
 #include <string>
@@ -28,7 +30,7 @@ int main(int argc, char** argv) {
     online::NetworkPort port(online::parse_address(std::string("udpout:127.0.0.1:") + argv[2]));
     double elapsed = 0.0;
     online::fly_in_real_time(autopilot, port, [&] {
-      constexpr double farewell = 5.0;  // to say that it has landed [s]
+      constexpr double farewell = 5.0;  // time to report the landing [s]
       if (!autopilot.has_landed()) elapsed = autopilot.time();
       return autopilot.time() > elapsed + farewell;
     });

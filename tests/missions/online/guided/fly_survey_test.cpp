@@ -1,4 +1,4 @@
-// A live survey flown on an autopilot of our own that has what faults a test wants.
+// Live surveys flown by the test autopilot, with the faults that each test selects.
 #include "missions/online/guided/fly_survey.h"
 
 #include <algorithm>
@@ -34,7 +34,7 @@ std::string mission_text() {
   return text.insert(text.find(vehicle) + vehicle.size(), "_ardupilot");
 }
 
-/// Work is done at once, as long as it takes: the autopilot's time stands still meanwhile.
+/// Does the work synchronously. The autopilot's time does not advance meanwhile.
 std::future<void> done_at_once(const std::function<void()>& work) {
   work();
   std::promise<void> done;
@@ -42,7 +42,7 @@ std::future<void> done_at_once(const std::function<void()>& work) {
   return done.get_future();
 }
 
-/// A survey, its autopilot, and what is said of the flight.
+/// A survey, its autopilot, and the messages of the flight.
 class FlySurvey : public testing::Test {
  protected:
   FlightEnd fly(const Faults& faults = {}, FlightOptions options = {}) {
@@ -64,7 +64,7 @@ class FlySurvey : public testing::Test {
 
   const online::Rehearsal rehearsal_{mission_text()};
   std::unique_ptr<tests::TestFolder> folder_ = std::make_unique<tests::TestFolder>();
-  /// Poses are exact: what plan would measure.
+  /// Poses are exact, so scans equal those of `plan`.
   Sensor sensor_ = [this](const geometry::View&, const geometry::View&, std::size_t) {
     return rehearsal_.scan(*survey_);
   };
@@ -91,7 +91,7 @@ TEST_F(FlySurvey, MatchesPlanAndKeepsClearance) {
   const Vector3d off = autopilot_->position() - survey_->flight()->pad();
   EXPECT_LT(off.norm(), setup.flight().tracking_error);
   const flight::ClearanceBudget clearance = setup.flight().budget();
-  // A set point is rounded to 1e-7 degrees, 1.1 cm.
+  // Set points are rounded to 1e-7 degrees, 1.1 cm.
   EXPECT_GT(find_nearest(autopilot_->set_points(), setup.scene()),
             clearance.total() - clearance.map_error - 0.02);
   EXPECT_GT(find_nearest(autopilot_->track(), setup.scene()),
@@ -99,7 +99,7 @@ TEST_F(FlySurvey, MatchesPlanAndKeepsClearance) {
   online::expect_same(survey_->finish(), rehearsal_.planned());
 }
 
-/// One frame in ten is lost, one in twenty damaged, others come twice or once more and late.
+/// A tenth of the frames is lost and a twentieth is damaged. Others arrive twice or late.
 TEST_F(FlySurvey, MatchesPlanOverLossyLink) {
   const FlightEnd end = fly({.lost = 0.1, .doubled = 0.1, .damaged = 0.05, .late = 0.1});
   ASSERT_FALSE(end.failure) << end.failure->what << "\n" << notes_;
@@ -136,11 +136,11 @@ TEST_F(FlySurvey, YieldsControlToPilotImmediately) {
   EXPECT_THAT(end.failure->what, HasSubstr("mode 5"));
   EXPECT_FALSE(end.has_landed);
   EXPECT_EQ(autopilot_->mode(), 5U);
-  // Modes are told once a second.
+  // The mode is reported once a second.
   EXPECT_LT(autopilot_->time() - autopilot_->taken_off() - 30.0, 1.3);
 }
 
-/// Whether each place is as near to one of the others as legs are flown.
+/// Returns true if each position is within `distance` of one of the others.
 bool are_near(const std::vector<Vector3d>& positions, const std::vector<Vector3d>& others,
               double distance) {
   return std::ranges::all_of(positions, [&](const Vector3d& position) {
@@ -149,7 +149,7 @@ bool are_near(const std::vector<Vector3d>& positions, const std::vector<Vector3d
   });
 }
 
-/// Set points are at most half a metre apart, and the way from the pad begins with none.
+/// Set points are at most 0.5 m apart. The path from the pad begins without set points.
 TEST_F(FlySurvey, StaysOnLegsWhenLinkIsLost) {
   fly();
   const std::vector<Vector3d> legs = autopilot_->set_points();
@@ -179,7 +179,7 @@ struct HeldFlight {
 
 class HeldFlights : public FlySurvey, public testing::WithParamInterface<HeldFlight> {};
 
-/// Even where a return is asked for: nobody knows where the vehicle is.
+/// Even if a return is requested, because the vehicle's position is unknown.
 TEST_P(HeldFlights, HoldPositionUntilPilotTakesOver) {
   const FlightEnd end = fly(GetParam().faults, {.returns_on_failure = true});
   ASSERT_TRUE(end.failure);
@@ -271,7 +271,7 @@ INSTANTIATE_TEST_SUITE_P(
         GroundedFlight{"flat_battery", {.battery = 0.265}, "battery at 26%"}),
     [](const auto& test) { return test.param.name; });
 
-/// The same vehicle with its camera bolted on, 20 degrees down.
+/// The same vehicle with a fixed camera, 20 degrees down.
 class FlySurveyWithFixedCamera : public testing::Test {
  protected:
   FlySurveyWithFixedCamera() {
@@ -291,7 +291,7 @@ class FlySurveyWithFixedCamera : public testing::Test {
 
 TEST_F(FlySurveyWithFixedCamera, TurnsTheVehicleAlone) {
   online::LiveSurvey survey = rehearsal_->open(folder_.path() / "survey");
-  // Its autopilot has no gimbal, and the wind tilts it.
+  // The vehicle has no gimbal, and the wind tilts it.
   TestAutopilot autopilot(rehearsal_->setup().flight(), survey.flight()->pad(),
                           {.wind_pitch = 0.05, .has_no_gimbal = true});
   SteppedPort port(autopilot);

@@ -1,5 +1,5 @@
 // A vehicle guided along legs by an autopilot that follows set points as ArduCopter does: it lags
-// behind them, flies past the last of them, drifts, and is stopped at any moment.
+// behind them, overshoots the last one, drifts, and may be stopped at any time.
 #include "missions/online/guided/guided_flight.h"
 
 #include <algorithm>
@@ -37,17 +37,18 @@ const flight::FlightOptions& options() {
   return options;
 }
 
-/// Out over four stops; the first is above the pad.
+/// Returns a path with four stops. The first point is above the pad.
 const std::vector<Vector3d>& path() {
   static const std::vector<Vector3d> positions = {
       {-75, 0, 8}, {-45, 0, 8}, {-45, 25, 14}, {-15, 25, 14}, {-15, 25, 30}};
   return positions;
 }
 
-/// ArduCopter's guided mode (PSC_JERK_XY), and a vehicle that is slower to tilt [m/s^3].
+/// Jerk limits of ArduCopter's guided mode (PSC_JERK_XY) and of a vehicle that tilts more slowly
+/// [m/s^3].
 constexpr double default_jerk = 5.0, heavy_jerk = 2.0;
 
-/// Calls something when a moment has come.
+/// Port that calls an observer at each time step.
 class WatchedPort : public SteppedPort {
  public:
   WatchedPort(TestAutopilot& autopilot, std::function<void()> observer)
@@ -65,7 +66,7 @@ class WatchedPort : public SteppedPort {
 struct Flight {
   explicit Flight(const Faults& faults) : autopilot(options(), pad, faults) {}
 
-  /// Takes off and flies the way; what ended it.
+  /// Takes off and flies the path. Returns the reason if it ended early.
   MaybeFailure fly(flight::mavlink::Port& port, std::stop_token stop) {
     const flight::GeodeticPoint origin = options().site.origin;
     link = std::make_unique<flight::mavlink::AutopilotLink>(port);
@@ -78,7 +79,7 @@ struct Flight {
     return vehicle->fly(path());
   }
 
-  /// As a live flight goes home: back along what was flown, and down.
+  /// Returns as a live flight does: back along the flown path, then down.
   MaybeFailure return_to_home() {
     vehicle->begin_return();
     if (MaybeFailure failure = vehicle->fly(vehicle->reversed_track())) return failure;
@@ -113,7 +114,8 @@ struct Flight {
   bool has_climbed = false;
 };
 
-/// The whole way and back, without an interruption: how long it takes, and that it is flown.
+/// Returns the duration of the whole path and back without an interruption, and checks that it is
+/// flown.
 double whole_time(const Faults& faults) {
   Flight flight(faults);
   SteppedPort port(flight.autopilot);
@@ -122,8 +124,8 @@ double whole_time(const Faults& faults) {
   return flight.autopilot.time() - flight.autopilot.taken_off();
 }
 
-// The fault of old: at the end of braking the vehicle is still ahead of its set point, by more than
-// legs are proven for.
+// At the end of braking, the vehicle is ahead of its set point by more than the tolerance of
+// verified legs.
 TEST(GuidedFlight, OvershootsSetPointsOnTestAutopilot) {
   Flight flight({.jerk = heavy_jerk});
   std::stop_source stop;
@@ -155,7 +157,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Kind{"heavy_and_drifting", {.jerk = heavy_jerk, .drift = 0.1}}),
     [](const auto& test) { return std::string(test.param.name); });
 
-// Two hundred at random moments: all go home along the way that they came by, and land.
+// Two hundred interruptions at random moments. All flights return along their path and land.
 TEST_P(Interruptions, EndOnPad) {
   const double whole = whole_time(GetParam().faults);
   std::mt19937_64 random(11);
@@ -171,7 +173,7 @@ TEST_P(Interruptions, EndOnPad) {
       }
     });
     const MaybeFailure failure = flight.fly(port, stop.get_token());
-    if (!failure) continue;  // drawn behind the last leg
+    if (!failure) continue;  // the moment is after the last leg
     ASSERT_EQ(failure->kind, FailureKind::interrupted)
         << "after " << moment << " s: " << failure->what;
     const MaybeFailure returned = flight.return_to_home();
@@ -182,7 +184,7 @@ TEST_P(Interruptions, EndOnPad) {
   }
 }
 
-// Where it holds is on the leg that it came on, and it is at rest there.
+// The vehicle holds on the leg on which it was interrupted, and is at rest there.
 TEST(GuidedFlight, HoldsAtRestOnLegWhenInterrupted) {
   for (const double moment : {9.0, 12.0, 15.0, 21.0, 27.0, 33.0}) {
     Flight flight({.jerk = heavy_jerk});
@@ -215,7 +217,7 @@ INSTANTIATE_TEST_SUITE_P(GuidedFlight, Stalls,
                                   "for" + std::to_string(static_cast<int>(test.param.duration));
                          });
 
-// The set points that follow are where the vehicle is, not where they ended.
+// The next set points start at the position of the vehicle, not at the last set point.
 TEST_P(Stalls, EndAtVehiclePosition) {
   Flight flight({.jerk = default_jerk});
   StallingPort port(flight.autopilot, GetParam().begin, GetParam().duration);
@@ -226,14 +228,14 @@ TEST_P(Stalls, EndAtVehiclePosition) {
   EXPECT_THAT(failure->what,
               HasSubstr("this program was suspended; stopping at the current position"));
   EXPECT_LT(flight.cross_track_error(flight.autopilot.position()), 0.35);
-  // From its top speed it comes to rest in less than 4 m.
+  // From its maximum speed, the vehicle stops within 4 m.
   EXPECT_LT((flight.autopilot.position() - *port.woken_at()).norm(), 4.0);
   const MaybeFailure returned = flight.return_to_home();
   EXPECT_FALSE(returned) << returned->what;
   EXPECT_FALSE(flight.autopilot.is_armed());
 }
 
-// Shorter ones are flown through: the vehicle never flies back.
+// The vehicle flies through shorter stalls and never flies backwards.
 TEST(GuidedFlight, FliesForwardAfterShortStall) {
   for (const double duration : {0.3, 0.6, 0.9}) {
     Flight flight({.jerk = default_jerk});
@@ -243,7 +245,7 @@ TEST(GuidedFlight, FliesForwardAfterShortStall) {
     const std::vector<Vector3d>& track = flight.autopilot.track();
     double farthest = -75.0;
     for (const Vector3d& position : testing_support::not_empty(track)) {
-      if (position.y() > 0.5) break;  // the first leg leads east
+      if (position.y() > 0.5) break;  // the first leg leads to the east
       EXPECT_GT(position.x(), farthest - 0.3) << duration;
       farthest = std::max(farthest, position.x());
     }
@@ -299,7 +301,7 @@ TEST(Gimbals, UseHorizonRelativeReportsDirectly) {
   }
 }
 
-// A tilt that does not change tells only what the gimbal would have to say at the view.
+// With a constant tilt, only the gimbal angle at the view reveals the frame of the report.
 TEST(Gimbals, DetectReportFrameDuringSteadyTilt) {
   GimbalReport report;
   report.begin_aim(0.0, -0.1);

@@ -26,7 +26,7 @@ using testing_support::thrown_message;
 
 constexpr std::uint32_t this_machine = 0x7F000001;
 
-/// A port of this machine that nobody has at present.
+/// Returns a free UDP port of this machine.
 std::uint16_t free_port() {
   const int handle = ::socket(AF_INET, SOCK_DGRAM, 0);
   sockaddr_in address{};
@@ -39,7 +39,7 @@ std::uint16_t free_port() {
   return ntohs(address.sin_port);
 }
 
-/// All that comes until there is as much as is waited for.
+/// Receives until there are `size` bytes, for at most 20 s.
 Bytes received(NetworkPort& port, std::size_t size) {
   Bytes all;
   const double end = port.now() + 20.0;
@@ -79,7 +79,7 @@ TEST(NetworkPort, ReceivesOnlyFromFirstSender) {
   NetworkPort port({NetworkAddress::Kind::udp_wait, this_machine, number});
   NetworkPort first({NetworkAddress::Kind::udp_send, this_machine, number});
   NetworkPort second({NetworkAddress::Kind::udp_send, this_machine, number});
-  port.send(Bytes{9});  // to nobody
+  port.send(Bytes{9});  // without a receiver
   first.send(Bytes{1, 2});
   EXPECT_EQ(received(port, 2), (Bytes{1, 2}));
   second.send(Bytes{3});
@@ -104,7 +104,7 @@ std::string flyable(std::string mission) {
   return mission.insert(mission.find(vehicle) + vehicle.size(), "_ardupilot");
 }
 
-/// The program itself, over the network and in real time, as far as the ground.
+/// Runs the program over the network and in real time, before the take-off.
 TEST(FlyCommand, ReportsAutopilotMessages) {
   const tests::TestFolder folder;
   const std::string text = flyable(tests::flight_mission());

@@ -34,7 +34,7 @@ class FolderSensor : public testing::Test {
   std::stop_source stop_;
 };
 
-/// A camera: it waits for the pose, and one point ahead of it is what it sees.
+/// A camera that waits for the pose and then writes a scan with one point in front of it.
 TEST_F(FolderSensor, WritesPoseAndReadsArrivingScan) {
   std::jthread camera([&](const std::stop_token& stop) {
     while (!stop.stop_requested() && !fs::exists(folder_.path() / "scan-0007.pose")) {

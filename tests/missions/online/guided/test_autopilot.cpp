@@ -19,8 +19,8 @@ constexpr double guided_timeout = 3.0;                  ///< GUID_TIMEOUT
 constexpr std::uint32_t guided = 4, loiter = 5, landing = 9;
 constexpr mavlink::Address itself{1, 1};
 
-/// A correction of an error: in proportion where it is small, else such that braking with `limit`
-/// is possible (AP_Math/control.cpp, sqrt_controller).
+/// Returns the correction velocity for a position error: proportional for small errors, otherwise
+/// limited so that `limit` is sufficient for braking (AP_Math/control.cpp, sqrt_controller).
 Vector3d square_root_controller(const Vector3d& error, double gain, double limit) {
   const double size = error.norm(), linear = limit / (gain * gain);
   if (size <= linear) return gain * error;
@@ -191,7 +191,7 @@ void TestAutopilot::send_frame(const M& message) {
   if (share(random_) < faults_.damaged) frame[frame.size() / 2] ^= 0x10;
   const int times = share(random_) < faults_.doubled ? 2 : 1;
   for (int i = 0; i < times; ++i) outgoing_.insert(outgoing_.end(), frame.begin(), frame.end());
-  if (share(random_) < faults_.late) late_ = frame;  // comes once more, after what follows it
+  if (share(random_) < faults_.late) late_ = frame;  // sent again after the next frame
 }
 
 void TestAutopilot::speak() {

@@ -1,8 +1,8 @@
-/// An autopilot that speaks MAVLink as ArduCopter does, flies the simulated vehicle of fly-test,
-/// and has what faults a test wants. Its time is what it is told to fly on.
+/// Autopilot with ArduCopter's MAVLink interface, which flies the simulated vehicle of fly-test and
+/// has the faults that a test selects. Its time advances only through calls.
 ///
-/// With a jerk it follows set points as ArduCopter does: they are shaped by limits of acceleration
-/// and jerk, so that the vehicle lags behind them and flies past the last of them
+/// With a jerk limit, it follows set points as ArduCopter does. Limits of acceleration and jerk
+/// shape the set points, so the vehicle lags behind them and overshoots the last one
 /// (AC_PosControl::input_pos_vel_accel_xy; AP_Math/control.cpp, shape_pos_vel_accel).
 #pragma once
 
@@ -24,24 +24,30 @@
 
 namespace skycap::missions::online {
 
-/// Times are since the vehicle took off [s]; none: never.
+/// Faults. Times are relative to the take-off [s]; empty: the fault does not occur.
 struct Faults {
-  double lost = 0.0, doubled = 0.0, damaged = 0.0, late = 0.0;  ///< shares of frames, both ways
-  std::optional<double> silent = {};                            ///< from then on
-  std::optional<double> position_stops = {};                    ///< from then on
+  /// Fractions of frames, in both directions.
+  double lost = 0.0, doubled = 0.0, damaged = 0.0, late = 0.0;
+  /// Time after which nothing is sent.
+  std::optional<double> silent = {};
+  /// Time after which the position is not updated.
+  std::optional<double> position_stops = {};
   std::optional<double> estimate_lost = {};
-  std::optional<double> pilot_takes_over = {};  ///< mode LOITER
-  std::optional<double> blown_away = {};        ///< half a metre a second to the east
-  std::optional<double> battery_fails = {};     ///< it is nearly empty at once
-  double battery = 1.0;                         ///< share at the beginning
-  std::optional<double> jerk = {};              ///< of the shaped set points [m/s^3]
-  double drift = 0.0;                           ///< about the set points: amplitude [m]
-  double wind_pitch = 0.0;                      ///< that it leans against the wind with [rad]
-  bool gimbal_against_vehicle = false;          ///< what its gimbal reports, as servo gimbals do
-  bool gimbal_stuck = false;                    ///< at the horizon
-  bool has_no_gimbal = false;                   ///< as ArduCopter comes: MNT1_TYPE is 0
+  std::optional<double> pilot_takes_over = {};  ///< time at which the mode changes to LOITER
+  /// Time after which the vehicle drifts to the east at 0.5 m/s.
+  std::optional<double> blown_away = {};
+  std::optional<double> battery_fails = {};  ///< time at which the battery becomes nearly empty
+  double battery = 1.0;                      ///< initial charge, as a fraction
+  std::optional<double> jerk = {};           ///< jerk limit of the shaped set points [m/s^3]
+  /// Amplitude of the drift around the set points [m].
+  double drift = 0.0;
+  double wind_pitch = 0.0;  ///< constant pitch against the wind [rad]
+  /// Gimbal reports angles relative to the vehicle, like servo gimbals.
+  bool gimbal_against_vehicle = false;
+  bool gimbal_stuck = false;   ///< gimbal stays at the horizon
+  bool has_no_gimbal = false;  ///< ArduCopter's default: MNT1_TYPE is 0
   bool answers_parameters = true;
-  float guided_timeout = 3.0F;  ///< its parameter GUID_TIMEOUT [s]
+  float guided_timeout = 3.0F;  ///< parameter GUID_TIMEOUT [s]
   bool rejects_arming = false;
   bool is_armed = false;
   std::uint8_t autopilot = 3;
@@ -53,22 +59,22 @@ class TestAutopilot {
   TestAutopilot(const flight::FlightOptions& flight, const Eigen::Vector3d& pad,
                 const Faults& faults);
 
-  /// Takes in what was sent to it.
+  /// Processes received bytes.
   void hear(std::span<const std::uint8_t> bytes);
 
-  /// Flies on; what it says meanwhile.
+  /// Advances the flight by `duration` [s] and returns the bytes sent meanwhile.
   flight::mavlink::Bytes fly_on(double duration);
 
   double time() const { return time_; }
-  double taken_off() const { return taken_off_.value(); }  ///< when
+  double taken_off() const { return taken_off_.value(); }  ///< time of the take-off
   bool has_taken_off() const { return taken_off_.has_value(); }
   bool is_armed() const { return is_armed_; }
   bool has_landed() const { return taken_off_ && !is_armed_; }
   std::uint32_t mode() const { return mode_; }
   const Eigen::Vector3d& position() const { return vehicle_.position(); }
-  /// Where it was, 25 times a second.
+  /// Returns the positions of the vehicle at 25 Hz.
   const std::vector<Eigen::Vector3d>& track() const { return track_; }
-  /// The set points that it was sent, in the mission's frame.
+  /// Returns the received set points in the mission frame.
   const std::vector<Eigen::Vector3d>& set_points() const { return set_points_; }
 
  private:
@@ -106,7 +112,7 @@ class TestAutopilot {
   std::vector<Eigen::Vector3d> track_, set_points_;
 };
 
-/// A link to it whose time is the autopilot's: it passes while one waits.
+/// Link in the autopilot's time, which advances while the caller waits.
 class SteppedPort : public flight::mavlink::Port {
  public:
   explicit SteppedPort(TestAutopilot& autopilot) : autopilot_(autopilot) {}
@@ -119,17 +125,17 @@ class SteppedPort : public flight::mavlink::Port {
   TestAutopilot& autopilot_;
 };
 
-/// The same, and from a moment on nothing is heard or sent for a while, as if the program that uses
-/// it had stood still; what was said meanwhile comes at once.
+/// Stepped port that pauses for a while, as if the program that uses it had been suspended.
+/// Messages of that time then arrive at once.
 class StallingPort : public SteppedPort {
  public:
-  /// Both since the vehicle took off [s].
+  /// Both times are relative to the take-off [s].
   StallingPort(TestAutopilot& autopilot, double begin, double duration)
       : SteppedPort(autopilot), autopilot_(autopilot), begin_(begin), duration_(duration) {}
 
   flight::mavlink::Bytes receive(double patience) override;
 
-  /// Where the vehicle was when the program went on.
+  /// Returns the position of the vehicle at the end of the pause.
   const std::optional<Eigen::Vector3d>& woken_at() const { return woken_at_; }
 
  private:
@@ -138,7 +144,7 @@ class StallingPort : public SteppedPort {
   std::optional<Eigen::Vector3d> woken_at_;
 };
 
-/// Has it fly by the clock of a port, over which it speaks and hears, until `is_over`.
+/// Flies in the time of the port and communicates through it until `is_over` returns true.
 void fly_in_real_time(TestAutopilot& autopilot, flight::mavlink::Port& port,
                       const std::function<bool()>& is_over);
 

@@ -58,7 +58,7 @@ TEST(LiveSurvey, ResumesAfterEveryScan) {
   }
 }
 
-/// A kill leaves any beginning of the journal, and maybe a scan that it does not know yet.
+/// A kill leaves any prefix of the journal, and possibly a scan that is not in the journal.
 TEST(LiveSurvey, ResumesFromAnyPrefixOfJournal) {
   const tests::TestFolder folder;
   const Rehearsal rehearsal(short_mission(tests::quick_mission(), "see++"));
@@ -125,7 +125,7 @@ TEST(LiveSurvey, IgnoresUnusableFirstScan) {
   EXPECT_EQ(rehearsal.open(folder.path()).views().size(), 1U);
 }
 
-/// Wrong by so many metres along x, and so many degrees about the sensor's own x.
+/// Returns a pose error of `shift` [m] along x and `turn_deg` degrees about the sensor's x axis.
 Eigen::Isometry3d make_error(const geometry::Scan& scan, double shift, double turn_deg) {
   Eigen::Isometry3d error = Eigen::Isometry3d::Identity();
   const Eigen::Vector3d sensor = scan.sensor_position();
@@ -199,7 +199,7 @@ TEST(LiveSurvey, ProposesNoPathAfterPoseWarning) {
   EXPECT_FALSE(survey.proposal().path.points.empty());
 }
 
-/// Whoever flies on while nobody knows where, has no way; the next scan that fits gives it back.
+/// While the pose is unknown there is no path. The next scan that fits restores it.
 TEST(LiveSurvey, RestoresPathAfterWrongEnRoutePose) {
   const tests::TestFolder folder;
   const Rehearsal rehearsal(moving_mission());
@@ -229,7 +229,7 @@ TEST(LiveSurvey, RestoresPathAfterWrongEnRoutePose) {
   EXPECT_EQ(survey.en_route(), 1U);
   ASSERT_FALSE(survey.proposal().path.points.empty());
   EXPECT_EQ(survey.proposal().path.points.back(), view.position);
-  // A way that is asked for now begins where the vehicle is.
+  // A path requested now starts at the current position of the vehicle.
   survey.reject("elsewhere");
   ASSERT_FALSE(survey.proposal().path.points.empty());
   EXPECT_LT((survey.proposal().path.points.front() - between.position).norm(), 1e-9);
@@ -246,8 +246,8 @@ TEST(LiveSurvey, RejectsEnRouteScansWithoutMovingCapture) {
               HasSubstr("en-route scans require sensor.capture: moving"));
 }
 
-// Of houses, whose walls and roofs show every way to move and are large beside the patches that are
-// compared; a teapot is too round.
+// The walls and roofs of houses constrain all directions and are large compared with the patches. A
+// teapot is too round.
 TEST(LiveSurvey, RepeatsPoseCorrectionsAfterReopening) {
   const tests::TestFolder folder;
   std::string houses = fine_mission(
@@ -326,7 +326,7 @@ TEST(LiveSurvey, RejectsJournalOfOtherFormatNamingItsVersion) {
                         "version; use another folder"));
 }
 
-/// Writes the one scan of a survey's folder anew, and its digest in the journal.
+/// Replaces the only scan in a survey's folder and its digest in the journal.
 void replace_scan(const fs::path& folder, const std::string& bytes) {
   const fs::path scan = fs::directory_iterator(folder / "scans")->path(),
                  journal = folder / "live.journal";
@@ -341,7 +341,7 @@ void replace_scan(const fs::path& folder, const std::string& bytes) {
   write_records(journal, records);
 }
 
-/// As somebody else's folder may be, whose digests are right.
+/// A manipulated folder with valid digests.
 TEST(LiveSurvey, RejectsInvalidStoredScans) {
   const Rehearsal rehearsal(tests::quick_mission());
   const auto error_message = [&](const std::string& part, const std::string& to) {
@@ -362,7 +362,7 @@ TEST(LiveSurvey, RejectsInvalidStoredScans) {
   EXPECT_THAT(error_message("", "\xff\xff\xff\x7f"), HasSubstr(".ply: cannot be used: "));
 }
 
-/// As from a program that plans otherwise.
+/// As if the journal came from a program that plans differently.
 TEST(LiveSurvey, RejectsDifferingProposals) {
   const tests::TestFolder folder;
   const Rehearsal rehearsal(tests::quick_mission());

@@ -22,7 +22,7 @@ using Eigen::Vector3d;
 
 constexpr double radius = 0.1;
 
-/// A room of six metres with a cupboard and a pillar.
+/// Returns a room of 6 m with a cupboard and a pillar.
 geometry::Mesh furnished() {
   geometry::Mesh mesh = tests::room_mesh({.width = 6.0, .height = 3.0, .wall = 0.2});
   geometry::append(mesh, sim::models::box({-3.0, 1.5, 0.0}, {-1.2, 3.0, 2.0}));
@@ -42,7 +42,7 @@ geometry::Scan moved(const geometry::Scan& scan, const Isometry3d& error) {
   return corrected(scan, error);
 }
 
-/// By 10 cm and 1 degree at the sensor, some way or other.
+/// Returns a random pose error of `shift` [m] and 1 degree at the sensor.
 Isometry3d error_at(const Vector3d& sensor, std::uint64_t seed, double shift = 0.1) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> number;
@@ -54,7 +54,7 @@ Isometry3d error_at(const Vector3d& sensor, std::uint64_t seed, double shift = 0
   return error;
 }
 
-/// A survey of that room, from its middle.
+/// Survey of the room from its centre.
 class Survey {
  public:
   Survey(const sim::Scene& scene, double noise, std::uint64_t seed, bool registers = false)
@@ -106,7 +106,7 @@ TEST_F(PoseChecks, AcceptTruePoses) {
   }
 }
 
-/// All that what both scans show can tell; in ways in which it may be shifted unseen they are not.
+/// All errors that the common surface of both scans can show. Unobservable shifts are not detected.
 TEST_F(PoseChecks, DetectTenCentimetresAndOneDegree) {
   int missed = 0;
   for (const double noise : {0.0, 0.01, 0.02}) {
@@ -149,7 +149,7 @@ TEST_F(PoseChecks, CorrectErrorsWithinSigma) {
   EXPECT_GE(whole, 8);
 }
 
-/// Nobody meets the same surface again after such a jump, but it was looked through.
+/// After such a jump the scans share no surface, but rays pass through known surface.
 TEST_F(PoseChecks, DetectJumpsBeyondSurfaceExtent) {
   Survey survey(scene_, 0.01, 1);
   for (const Vector3d& stop : stops) survey.remember(survey.scan(stop, cupboard));
@@ -161,7 +161,7 @@ TEST_F(PoseChecks, DetectJumpsBeyondSurfaceExtent) {
   }
 }
 
-/// A wall says nothing of motions along it.
+/// A wall does not constrain motion along it.
 TEST_F(PoseChecks, ReportUnobservableDirectionsOfWall) {
   Survey survey(scene_, 0.01, 1, true);
   const Vector3d stop(0.5, 0.0, 1.5), wall(0.5, -3.0, 1.5);
@@ -181,7 +181,7 @@ TEST_F(PoseChecks, SkipScansWithoutOverlap) {
   EXPECT_FALSE(finding.is_wrong);
 }
 
-/// Whichever way the sensor looks, its errors are along the mission's axes.
+/// For any view direction, the errors are along the axes of the mission.
 TEST_F(PoseChecks, AllowErrorsAlongCovarianceAxes) {
   for (int axis = 0; axis < 3; ++axis) {
     Survey survey(scene_, 0.005, 1, true);
@@ -201,7 +201,7 @@ TEST_F(PoseChecks, AllowErrorsAlongCovarianceAxes) {
   }
 }
 
-/// A mast that turns at its foot: position and direction go astray together, and only so.
+/// A mast that tilts at its base: position and direction errors are fully correlated.
 TEST_F(PoseChecks, RespectCorrelatedErrors) {
   Survey survey(scene_, 0.005, 1);
   survey.remember(survey.scan(stops[0], cupboard));

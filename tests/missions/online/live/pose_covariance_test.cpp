@@ -23,7 +23,7 @@ using testing_support::thrown_message;
 using Matrix = PoseCovariance::Matrix;
 using Vector = PoseCovariance::Vector;
 
-/// By rows, all of it or the upper triangle.
+/// Formats the matrix by rows: all elements, or the upper triangle.
 std::string format_covariance(const Matrix& matrix, bool is_whole) {
   std::string text;
   for (int row = 0; row < 6; ++row) {
@@ -34,7 +34,7 @@ std::string format_covariance(const Matrix& matrix, bool is_whole) {
   return text;
 }
 
-/// Of a pose's errors L n, with n independent and of standard deviation one.
+/// Returns the root L of a covariance: pose errors are L n with independent unit normals n.
 Matrix some_root(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> number(0.0, 0.1);
@@ -96,9 +96,9 @@ TEST(PoseCovariance, ComputesDeviationsLikeMatrixRoot) {
 TEST(PoseCovariance, ComputesDistanceInStandardDeviations) {
   Vector error;
   error << 0.3, 0.0, 0.0, 0.0, 0.0, 0.04;
-  // Nothing is known to be wrong: what is left are the errors that come on top.
+  // With zero covariance, only the additional errors remain.
   EXPECT_NEAR(PoseCovariance{}.distance(error, 0.1, 0.01), 5.0, 1e-12);
-  // Errors that go together are less surprising than either sign alone says.
+  // Correlated errors with the expected signs have a smaller distance than errors with other signs.
   PoseCovariance together;
   together.matrix(0, 0) = 0.09;
   together.matrix(5, 5) = 0.0016;
@@ -108,7 +108,7 @@ TEST(PoseCovariance, ComputesDistanceInStandardDeviations) {
   EXPECT_GT(together.distance(error, 1e-3, 1e-3), 30.0);
 }
 
-/// Filters write these: with the last bits lost, and without any error along some axes.
+/// Filters produce such matrices, with rounding errors and without uncertainty along some axes.
 TEST(PoseCovariance, AcceptsRoundedAndSingularMatrices) {
   Vector once;
   once << 0.1, -0.2, 0.3, 0.01, 0.02, -0.03;
@@ -144,7 +144,7 @@ TEST(PoseCovariance, RejectsInvalidInputInOneLine) {
   EXPECT_THAT(with(0, 1, 0.001, 0.002), HasSubstr("is not symmetric: x,y is 0.001, y,x is 0.002"));
   EXPECT_THAT(with(3, 5, 0.011, 0.011),
               HasSubstr("rx,rz is 0.011, beyond the limit set by the variances"));
-  Matrix impossible = Matrix::Identity() * 0.01;  // each pair alone would do
+  Matrix impossible = Matrix::Identity() * 0.01;  // each pair alone would be valid
   for (const auto& [row, column, value] :
        {std::tuple(0, 1, 0.009), {1, 2, 0.009}, {0, 2, -0.009}}) {
     impossible(row, column) = impossible(column, row) = value;

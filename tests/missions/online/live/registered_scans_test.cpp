@@ -1,5 +1,5 @@
-// Scans from poses that are off, in scenes that show more or less of it, with other random numbers
-// each: what is corrected is right where the surface shows all six ways to move.
+// Registration of scans with pose errors in scenes that constrain more or fewer directions. Where
+// the surface constrains all six directions, the corrections are right.
 #include <cstdlib>
 #include <iostream>
 #include <random>
@@ -24,7 +24,7 @@ using Eigen::Isometry3d;
 using Eigen::Vector3d;
 using sim::models::box;
 
-/// Where a sensor may be and what it may look at.
+/// Regions of sensor positions and of targets.
 struct TestPose {
   std::string name;
   geometry::Mesh mesh;
@@ -38,7 +38,7 @@ geometry::Mesh solids(const std::vector<Eigen::AlignedBox3d>& boxes) {
   return mesh;
 }
 
-/// Three squares of two metres.
+/// Returns three squares of 2 m.
 TestPose corner() {
   return {"corner",
           solids({{Vector3d(-0.2, -0.2, -0.2), Vector3d(2, 2, 0)},
@@ -49,7 +49,7 @@ TestPose corner() {
           {Vector3d(0.5, 0.5, 0.5), Vector3d(0.8, 0.8, 0.8)}};
 }
 
-/// Six metres wide, with a cupboard and a pillar.
+/// Returns a room 6 m wide, with a cupboard and a pillar.
 TestPose room() {
   geometry::Mesh mesh = tests::room_mesh({.width = 6.0, .height = 3.0, .wall = 0.2});
   geometry::append(mesh, solids({{Vector3d(-3, 1.5, 0), Vector3d(-1.2, 3, 2)},
@@ -61,7 +61,7 @@ TestPose room() {
           {Vector3d(-2, 2, 0.6), Vector3d(-1, 2.8, 1.6)}};
 }
 
-/// With a porch, a pilaster, eaves and the ground before it, seen from outside.
+/// Returns a building with a porch, a pilaster, eaves and ground, seen from outside.
 TestPose building() {
   return {"building",
           solids({{Vector3d(-30, -30, -0.5), Vector3d(30, 30, 0)},
@@ -74,7 +74,7 @@ TestPose building() {
           {Vector3d(-2, -4, 2.5), Vector3d(2, -4, 4)}};
 }
 
-/// The foot of a wall.
+/// Returns the base of a wall.
 TestPose edge() {
   return {"edge",
           solids({{Vector3d(-8, -8, -0.2), Vector3d(8, 8, 0)},
@@ -113,13 +113,13 @@ class Numbers {
   std::mt19937_64 random_;
 };
 
-/// A scan that was moved, beside one that was not.
+/// Results for a scan with a pose error.
 struct Trial {
-  PoseFinding known, unknown;  ///< with the pose's covariance and registration, and with neither
-  double shift, turn;          ///< what is left of the error [m], [rad]
+  PoseFinding known, unknown;  ///< with covariance and registration, and without both
+  double shift, turn;          ///< remaining errors [m], [rad]
 };
 
-/// 10 cm and a degree off.
+/// Registers a scan with a pose error of 10 cm and 1 degree.
 Trial tried(const TestPose& pose, const sim::Scene& scene, double noise, std::uint64_t seed) {
   constexpr double shift = 0.1, angle = geometry::radians_per_degree;
   Numbers numbers(seed);
@@ -160,13 +160,13 @@ Trial tried(const TestPose& pose, const sim::Scene& scene, double noise, std::ui
 
 struct Counts {
   int all = 0;
-  int missed = 0;     ///< not said to be wrong, where nothing is known of the pose
-  int corrected = 0;  ///< and shown whole
-  int fine = 0;       ///< of those, within a centimetre and a tenth of a degree
-  int far = 0;        ///< of those, off by more than three centimetres or half a degree
+  int missed = 0;     ///< errors not detected without information about the pose
+  int corrected = 0;  ///< all directions are constrained
+  int fine = 0;       ///< number of corrected scans within 1 cm and 0.1 degrees
+  int far = 0;        ///< number of corrected scans off by more than 3 cm or 0.5 degrees
 };
 
-/// So many scans for each noise.
+/// Tries the same number of scans for each noise level.
 Counts count(const TestPose& pose) {
   const char* const more = std::getenv("REGISTERED_SCANS");
   const std::uint64_t scans = more == nullptr ? 16 : std::strtoul(more, nullptr, 10);
@@ -197,7 +197,7 @@ Counts count(const TestPose& pose) {
   return counts;
 }
 
-// REGISTERED_SCANS in the environment for more than 16 of each noise.
+// REGISTERED_SCANS in the environment sets the number of scans for each noise level (default: 16).
 TEST(RegisteredScans, AreCorrectWhenSurfaceConstrainsAllDirections) {
   const Counts corner_counts = count(corner()), in_room = count(room()),
                building_counts = count(building());
@@ -207,7 +207,7 @@ TEST(RegisteredScans, AreCorrectWhenSurfaceConstrainsAllDirections) {
   EXPECT_LE(missed, 3 * corner_counts.all / 50);
 }
 
-/// A wall, and the foot of one, never show all.
+/// Neither a wall nor its base constrains all directions.
 TEST(RegisteredScans, AreNotCorrectedWhenSurfaceAllowsSliding) {
   EXPECT_EQ(count(wall()).corrected, 0);
   EXPECT_EQ(count(edge()).corrected, 0);

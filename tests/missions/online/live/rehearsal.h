@@ -1,4 +1,4 @@
-/// A live survey in a simulated world, where it is known what has to come out.
+/// Live survey in a simulated world with known results.
 #pragma once
 
 #include <algorithm>
@@ -21,10 +21,10 @@
 
 namespace skycap::missions::online {
 
-/// A mission, its scene, and a sensor in it that takes the place of a real one.
+/// A mission, its scene, and a simulated sensor that replaces the real one.
 class Rehearsal {
  public:
-  /// `folder` is what the mission's files are named from; zero threads: all processors.
+  /// `folder` is the base of the mission's file names. 0 threads: all processors.
   explicit Rehearsal(const std::string& mission, const std::filesystem::path& folder = "",
                      unsigned threads = 1)
       : setup_(config::parse_mission(mission, "m.yaml")),
@@ -46,12 +46,13 @@ class Rehearsal {
             threads_};
   }
 
-  /// What `plan` would measure from the proposed view.
+  /// Returns the scan that `plan` would simulate from the proposed view.
   geometry::Scan scan(const LiveSurvey& survey) const {
     return sensor_.scan(scene_.scene(), *survey.proposal().view, survey.views().size(), threads_);
   }
 
-  /// Without a vehicle `plan` knows from the scene, and a crew by looking, what is walled in.
+  /// Returns false for enclosed views. Without a vehicle, `plan` derives this from the scene, and a
+  /// crew sees it.
   bool can_reach(const LiveSurvey& survey) const {
     return setup_.flight().has_vehicle() || survey.views().empty() ||
            scene_.is_reachable(survey.proposal().view->position);
@@ -76,7 +77,7 @@ class Rehearsal {
   unsigned threads_;
 };
 
-/// A rehearsal's sensor as its vehicle carries it, on the ways too.
+/// Simulated sensor on its vehicle, which also measures en route.
 class Platform {
  public:
   explicit Platform(const Rehearsal& rehearsal)
@@ -87,8 +88,8 @@ class Platform {
     bool is_en_route;
   };
 
-  /// What `plan` would measure next: on the way to the proposed view, if something is to be
-  /// measured there, or else from the view.
+  /// Returns the next scan of `plan`: the next frame en route to the proposed view, or the scan
+  /// from the view.
   RehearsedScan next(LiveSurvey& survey) {
     const std::vector<session::ViewInFlight> frames = survey.frames();
     const geometry::View& view = *survey.proposal().view;
@@ -123,7 +124,7 @@ inline std::vector<Eigen::Vector3d> positions(const std::vector<session::Evaluat
   return positions;
 }
 
-/// All that both kinds of survey know, to the last bit.
+/// Expects bitwise equality of all data that both kinds of surveys have.
 inline void expect_same(const session::SurveyRecord& live, const session::SurveyRecord& planned) {
   EXPECT_EQ(live.stop_reason, planned.stop_reason);
   const std::vector<Eigen::Vector3d> ours = positions(live.views),
@@ -141,7 +142,7 @@ inline void expect_same(const session::SurveyRecord& live, const session::Survey
   EXPECT_EQ(live.flight_record->times, planned.flight_record->times);
 }
 
-/// Five views at most, or so many, and by another planner if one is named.
+/// Limits the mission to `views` views and optionally sets another planner.
 inline std::string short_mission(std::string mission, const std::string& planner = "",
                                  int views = 5) {
   const std::string limit = "max_views: ", section = "planner: {";
@@ -151,15 +152,15 @@ inline std::string short_mission(std::string mission, const std::string& planner
   return mission.insert(mission.find(section) + section.size(), "name: " + planner + ", ");
 }
 
-/// A vehicle's, whose camera also measures on the ways. It is too far from its teapot, and that too
-/// round, for poses to be judged by it: some of the many frames would be suspected.
+/// Returns a mission with a vehicle whose camera also measures en route. Its teapot is too distant
+/// and too round for the pose check, which would suspect some of the many frames.
 inline std::string moving_mission(const std::string& live = "", int views = 5) {
   std::string mission = short_mission(tests::flight_mission(live), "", views);
   const std::string section = "sensor: {";
   return mission.insert(mission.find(section) + section.size(), "capture: moving, ");
 }
 
-/// The teapot, measured well enough for poses to be looked at, and what `live` says.
+/// Returns the teapot mission, measured finely enough for the pose check, with the keys in `live`.
 inline std::string fine_mission(const std::string& live = "") {
   std::string mission = short_mission(tests::quick_mission(live), "see++");
   const std::string noise = "sigma: 0.03";

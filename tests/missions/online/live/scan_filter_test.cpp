@@ -18,7 +18,7 @@ namespace {
 
 using Pixels = std::set<std::uint32_t>;
 
-/// A room with pillars, seen by a camera of 320 x 240 pixels.
+/// Room with pillars, seen by a camera of 320 x 240 pixels.
 class FlyingPixels : public testing::Test {
  protected:
   static geometry::Mesh pillars() {
@@ -39,8 +39,8 @@ class FlyingPixels : public testing::Test {
                                          0, 1);
   }
 
-  /// Half way to what is behind, where a row goes from a pillar to the wall: what the edge's pixel
-  /// sees. Every fourth one.
+  /// Moves every fourth edge pixel between a pillar and the wall halfway to the background, as a
+  /// mixed pixel.
   static Pixels mix(geometry::Scan& scan) {
     Pixels mixed;
     for (std::size_t i = 1; i + 1 < scan.points.size(); ++i) {
@@ -57,7 +57,7 @@ class FlyingPixels : public testing::Test {
   static double compute_depth(const geometry::Scan& scan, std::size_t i) {
     return (scan.world_from_sensor.inverse() * scan.points[i].cast<double>()).z();
   }
-  /// Along its ray.
+  /// Moves a point along its ray.
   static void move_to(geometry::Scan& scan, std::size_t i, double depth) {
     const Eigen::Vector3d ray = scan.points[i].cast<double>() - scan.sensor_position();
     scan.points[i] =

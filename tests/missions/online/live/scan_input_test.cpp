@@ -26,7 +26,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing_support::thrown_message;
 
-/// A camera of 64 x 48 pixels and right angles both ways: f = 32 and 24.
+/// Returns a mission with a camera of 64 x 48 pixels and 90-degree fields of view: f = 32 and 24.
 config::MissionSetup make_setup(const std::string& more = "") {
   return config::parse_mission(
       "sensor: {width: 64, height: 48, horizontal_fov_deg: 90, vertical_fov_deg: 90,\n"
@@ -51,14 +51,14 @@ Isometry3d some_pose() {
 }
 
 TEST(CameraIntrinsics, ComputesRaysThatDistortBackToPixels) {
-  // Of a real camera: TUM RGB-D's freiburg1, colour.
+  // Real camera: TUM RGB-D freiburg1, colour.
   const CameraIntrinsics intrinsics =
       parse_intrinsics("517.3 516.5 318.6 255.3 0.2624 -0.9531 -0.0054 0.0026 1.1633");
   for (int u = 0; u < 640; u += 71) {
     for (int v = 0; v < 480; v += 53) {
       const auto ray = intrinsics.ray({u, v});
       ASSERT_TRUE(ray) << u << ", " << v;
-      // OpenCV's documentation of calib3d, written out.
+      // Formula from OpenCV's documentation of calib3d.
       const double x = ray->x(), y = ray->y(), r2 = x * x + y * y;
       const double radial = 1 + 0.2624 * r2 - 0.9531 * r2 * r2 + 1.1633 * r2 * r2 * r2;
       const double xd = x * radial + 2 * -0.0054 * x * y + 0.0026 * (r2 + 2 * x * x);
@@ -91,7 +91,7 @@ TEST(PoseString, ReadsEveryLayout) {
   }
 }
 
-/// As trackers write it; of the data set 7-Scenes.
+/// Pose as trackers write it, from the data set 7-Scenes.
 TEST(PoseString, OrthonormalisesRotation) {
   const Isometry3d pose = parse_pose_text(
       "0.9093129 0.2726223 -0.3142243 -0.34\n-0.2724862 0.9610498 0.0452796 0.016\n"
@@ -129,7 +129,7 @@ TEST(DepthImage, ConvertsPixelsToPointsAlongRays) {
   EXPECT_LT((found.scan.points[0].cast<double>() - expected).norm(), 1e-6);
 }
 
-// ICL-NUIM's images have a negative focal length: the axis points the other way.
+// ICL-NUIM images have a negative focal length: the axis has the opposite direction.
 TEST(CameraIntrinsics, FlipsAxisForNegativeFocalLength) {
   const auto up = parse_intrinsics("480 -480 319.5 239.5").ray({400, 100});
   const auto down = parse_intrinsics("480 480 319.5 239.5").ray({400, 100});
@@ -140,7 +140,8 @@ TEST(CameraIntrinsics, FlipsAxisForNegativeFocalLength) {
               HasSubstr("non-zero focal lengths"));
 }
 
-// By a factor in both directions; a cropped image, or a lens off its middle, is what it is.
+// A size that differs by a factor in both directions is rejected. Cropped images and shifted
+// principal points are accepted.
 TEST(DepthImage, RejectsSizeDifferentFromIntrinsics) {
   const testing_support::TemporaryFolder folder;
   const auto error_message = [&](int width, int height,
@@ -163,7 +164,8 @@ TEST(DepthImage, RejectsSizeDifferentFromIntrinsics) {
   EXPECT_EQ(error_message(160, 60, parse_intrinsics("145 145 80 60")), "");
 }
 
-/// The lens looks elsewhere than the mission's camera: points stay true, and pixels follow them.
+/// The intrinsics differ from the mission's camera. Points remain correct, and they are assigned to
+/// the corresponding pixels.
 TEST(DepthImage, RemapsOtherIntrinsicsToMissionPixels) {
   const testing_support::TemporaryFolder folder;
   const geometry::DepthImage image{64, 48, std::vector<std::uint16_t>(64 * 48, 2000)};
@@ -184,7 +186,7 @@ TEST(DepthImage, RemapsOtherIntrinsicsToMissionPixels) {
 TEST(Cloud, ProjectsUnorderedPointsIntoCamera) {
   const testing_support::TemporaryFolder folder;
   const auto file = folder.path() / "cloud.ply";
-  // Behind; far off to the side; two in one pixel; in the middle.
+  // Points behind the camera, outside the image, two in one pixel, and one in the centre.
   const std::vector<Eigen::Vector3f> points{
       {0, 0, -1}, {9, 0, 1}, {1, 0.5, 4}, {0.5, 0.25, 2}, {0, 0, 1}};
   geometry::write_cloud(file, {.positions = points, .normals = {}, .views = {}, .colours = {}});

@@ -41,7 +41,7 @@ std::vector<float> flatten_points(const geometry::Scan& scan) {
   return {begin, begin + 3 * scan.points.size()};
 }
 
-/// A scanner that measures all the way, round a teapot of 20 m.
+/// Returns a mission with a scanner that measures continuously, around a teapot of 20 m.
 std::string scanner_mission() {
   return "scene: {model: builtin:teapot, longest_side: 20, ground: true}\n"
          "sensor: {lidar: velodyne_vlp16}\n"
@@ -54,7 +54,7 @@ std::string scanner_mission() {
          "limits: {max_views: 6}\n";
 }
 
-/// A survey that is served from a thread of its own.
+/// Survey that is served from its own thread.
 class Served {
  public:
   Served(const Rehearsal& rehearsal, ServerEndpoint endpoint)
@@ -73,7 +73,7 @@ class Served {
 
   const std::string& address() const { return server_.address(); }
 
-  /// Ends the server.
+  /// Ends the server and returns the survey record.
   session::SurveyRecord record() {
     thread_.join();
     return std::move(record_).value();
@@ -96,14 +96,14 @@ class Served {
   std::jthread thread_;
 };
 
-/// The survey as the simulator feeds it through a socket.
+/// Runs a survey with scans of the simulator through a socket.
 session::SurveyRecord fed_by_simulator(const Rehearsal& rehearsal) {
   const tests::TestFolder folder;
   Served served(rehearsal, {.socket = folder / "socket", .port = {}});
   skycap_live::Survey client(served.address());
   Platform platform(rehearsal);
   while (client.next().find("\"state\":\"view\"") != std::string::npos) {
-    // Between two messages nobody else is at the survey.
+    // Between two messages no other thread uses the survey.
     LiveSurvey& survey = served.survey();
     if (!rehearsal.can_reach(survey)) {
       client.reject(survey.proposal().number, "walled in");
@@ -128,8 +128,8 @@ TEST(Serve, MatchesPlanWithSimulatedScans) {
   }
 }
 
-/// The missions that SHIPPED_MISSIONS names, such as "bunny city_block", else a quick one, whole.
-/// With SHIPPED_VIEWS those that have no limits end after so many.
+/// Runs the complete missions in SHIPPED_MISSIONS, such as "bunny city_block", or a quick one by
+/// default. SHIPPED_VIEWS limits the number of views of missions without limits.
 TEST(Serve, MatchesPlanForShippedMissions) {
   const std::filesystem::path missions = std::filesystem::path(SKYCAP_SOURCE_DIR) / "missions";
   // NOLINTNEXTLINE(concurrency-mt-unsafe): nothing sets variables
@@ -159,7 +159,7 @@ TEST(Serve, AnswersOneClientAtATime) {
   }
   std::optional<std::string> answer;
   for (int attempt = 0; attempt < 100 && !answer; ++attempt) {
-    try {  // until the server has noticed that the first one left
+    try {  // wait until the server has noticed that the first client left
       answer = skycap_live::Survey(served.address()).next();
     } catch (const std::runtime_error&) {
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -195,7 +195,7 @@ class ServeSession : public testing::Test {
                    survey_, [] { return std::string(); }};
 };
 
-/// Each in its place among the frames of the way, and the view only then.
+/// Each scan is accepted at its index among the frames of the leg, and the view only after them.
 TEST(Serve, AcceptsEnRouteScansInOrderAndOnce) {
   const Rehearsal rehearsal(moving_mission());
   const tests::TestFolder folder;
@@ -236,7 +236,7 @@ TEST(Serve, AcceptsEnRouteScansInOrderAndOnce) {
   EXPECT_EQ(answer.at("frames").size(), frames - 1);
   EXPECT_EQ(ask(frame, 1, 0).at("is_new"), false);
   EXPECT_THAT(ask(first, 1, 0).dump(), HasSubstr("scan 1 en-route frame 0 was a different scan"));
-  // Frames are left out as one likes: the view may come at any time.
+  // Frames may be skipped: the scan of the view may arrive at any time.
   answer = ask(rehearsal.scan(survey), 1, {});
   EXPECT_EQ(answer.at("scans"), 2);
   EXPECT_EQ(answer.at("en_route"), 0);
@@ -256,7 +256,8 @@ TEST_F(ServeSession, RejectsScansOutOfOrderAndIgnoresRepeats) {
   EXPECT_EQ(survey_.views().size(), 1U);
 }
 
-/// As those of files: each point in the pixel that it is seen in, the nearest of several.
+/// As for files, each point is assigned to the pixel in which it is visible. The nearest point
+/// wins.
 TEST_F(ServeSession, AssignsPixelsToSensorFrameClouds) {
   const geometry::Scan scan = rehearsal_.scan(survey_);
   const Eigen::Isometry3d sensor_from_world = scan.world_from_sensor.inverse();
@@ -304,7 +305,8 @@ TEST_F(ServeSession, WarnsAboutWrongPoses) {
   EXPECT_EQ(survey_.views().size(), 2U);
 }
 
-/// A jump is one that the covariance explains, or one that sets the scan aside.
+/// A covariance that explains the pose jump prevents the warning. An invalid covariance is
+/// rejected.
 TEST(Serve, UsesPoseCovarianceOfClient) {
   const tests::TestFolder folder;
   const Rehearsal rehearsal(fine_mission());

@@ -42,7 +42,7 @@ TEST(Wire, DecodesMessagesFromAnyChunkSize) {
   }
 }
 
-/// Written by hand from docs/reference/live-protocol.md; the checksum is Python's
+/// Written by hand from docs/reference/live-protocol.md. The checksum is Python's
 /// zlib.crc32(b'{"type":"next"}').
 TEST(Wire, MatchesDocumentedFormat) {
   const std::string frame("\x0f\0\0\0\0\0\0\0\x1c\xab\x42\xde{\"type\":\"next\"}", 27);
@@ -70,7 +70,8 @@ TEST(Wire, RejectsInvalidMessages) {
               HasSubstr("JSON object"));
 }
 
-/// No bytes do more than be refused or waited for; one changed bit is never taken for a message.
+/// Random bytes are rejected or treated as incomplete. A frame with one changed bit is never
+/// accepted.
 TEST(Wire, RejectsCorruptedBytes) {
   std::mt19937_64 random(1);
   const std::string frame = encode_frame(sample);

@@ -1,4 +1,4 @@
-// Rawlogs that lack something, are damaged, or lie about their sizes.
+// Rawlogs that are incomplete, damaged, or declare wrong sizes.
 #include <cmath>
 #include <cstring>
 #include <functional>
@@ -54,7 +54,7 @@ TEST_F(Rawlog, ReportsInvalidIntrinsicsAndRangeUnits) {
   EXPECT_THAT(note([](auto& scan) { scan.sensorPose.x(1e30); }), HasSubstr("its pose"));
 }
 
-/// What is compressed well is little as a file.
+/// Well-compressed content is small in the file.
 TEST_F(Rawlog, RejectsContentBeyondMemoryLimits) {
   const auto large = range_scan(1.0);
   large->rangeImage_setSize(5001, 5000);
@@ -88,7 +88,7 @@ TEST_F(Rawlog, RejectsTruncatedFiles) {
   EXPECT_THAT(error_message(folder_ / "nowhere.rawlog"), HasSubstr("is not a file"));
 }
 
-/// MRPT allocates what a file says it needs: a count of points, and the sides of an image.
+/// MRPT allocates what a file declares: a number of points, and the sides of an image.
 TEST_F(Rawlog, RejectsInvalidCounts) {
   const std::string whole = tests::read_content(write({robot_pose(1.0, {}), range_scan(1.0)}));
   const std::string sides{"\x18\0\0\0\x20\0\0\0", 8};
@@ -116,7 +116,7 @@ TEST_F(Rawlog, ReadsOrRejectsDamagedFiles) {
   const std::string whole = tests::read_content(
       write({robot_pose(1.0, {}), wheels(1.0, 0, 0), range_scan(1.0, "DEPTH"), frame}));
   std::mt19937_64 random(1);
-  // The bytes of the images' pixels are of no interest.
+  // Bytes of image pixels are not tested.
   std::vector<std::size_t> offsets;
   for (std::size_t i = 0; i < whole.size(); ++i) {
     const bool is_pixel = std::string_view(whole).substr(i, 3).find('\0') == std::string::npos;

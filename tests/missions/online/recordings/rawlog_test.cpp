@@ -1,4 +1,4 @@
-// Rawlogs that MRPT's own library has written, and put into space.
+// Rawlogs written by MRPT's library, and the positions of their points.
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -29,7 +29,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
 
-/// With the axes of the optical frame, by MRPT's own composition.
+/// Returns the pose of the optical frame, by MRPT's composition.
 CPose3D optical(const CPose3D& sensor) {
   constexpr double quarter = 0.5 * std::numbers::pi;
   return sensor + CPose3D(0, 0, 0, -quarter, 0, -quarter);
@@ -63,7 +63,8 @@ TEST_F(Rawlog, ProjectsRangeImagesLikeMrpt) {
       for (std::size_t i = 0; i < found.size(); ++i) {
         Eigen::Vector3f point;
         expected.getPoint(i, point.x(), point.y(), point.z());
-        // MRPT's rays are floats, and undistorted in few rounds: a thousandth of a pixel.
+        // MRPT's rays are floats and undistorted with few iterations, which limits the accuracy to
+        // a thousandth of a pixel.
         ASSERT_LT((found[i] - point).norm(), 5e-4) << i << ", " << is_depth << ", " << is_bent;
       }
     }
@@ -91,7 +92,7 @@ TEST_F(Rawlog, UsesWheelOdometryWithoutBetterPoses) {
   EXPECT_THAT(source_, HasSubstr("with drift"));
 }
 
-/// The older format: a frame of observations, then how the robot moved, and again.
+/// The older format alternates frames of observations with movements of the robot.
 TEST_F(Rawlog, IntegratesMovementsBetweenFrames) {
   const CPose3D in_space(0.5, 0.1, 0.2, 0.3, 0.1, -0.1);
   const auto frame = [](double time) {
@@ -167,7 +168,7 @@ TEST_F(Rawlog, ReadsPointClouds) {
             1e-5);
 }
 
-/// One shot of a VLP-16's first channel, 15 degrees downwards, 5000 steps of 2 mm far.
+/// A pulse of a VLP-16's first channel, 15 degrees down, with a range of 5000 steps of 2 mm.
 TEST_F(Rawlog, DecodesVelodynePackets) {
   const auto scan = std::make_shared<mrpt::obs::CObservationVelodyneScan>();
   scan->timestamp = mrpt::Clock::fromDouble(1.0);
@@ -187,10 +188,11 @@ TEST_F(Rawlog, DecodesVelodynePackets) {
   const auto& found = std::get<std::vector<Eigen::Vector3f>>(all[0].scan.content);
   ASSERT_EQ(found.size(), 1U);
   EXPECT_NEAR(found[0].norm(), 10.0, 0.01);
-  EXPECT_NEAR(found[0].y(), 10.0 * std::sin(15.0 * std::numbers::pi / 180.0), 0.02);  // downwards
+  // y points down.
+  EXPECT_NEAR(found[0].y(), 10.0 * std::sin(15.0 * std::numbers::pi / 180.0), 0.02);
 }
 
-/// The same images by this door and as PNG files.
+/// The same images from a rawlog and from PNG files.
 TEST_F(Rawlog, MatchesSurveyFromImageFiles) {
   const std::string mission = folder_.write(
       "m.yaml",

@@ -23,7 +23,7 @@ constexpr std::size_t all = 1000;
 class Recording : public testing::Test {
  protected:
   void write(const std::string& name, const std::string& text) const { folder_.write(name, text); }
-  /// Three images and two poses.
+  /// Writes a sequence with three images and these poses.
   void write_tum(const std::string& poses) const {
     for (const char* name : {"a.png", "b.png", "c.png"}) write(name, "");
     write("depth.txt", "# depth maps\n1.00 a.png\n1.10 b.png\n1.20 c.png\n");
@@ -56,7 +56,7 @@ TEST_F(Recording, PairsTumImagesAndPosesByTime) {
                                 HasSubstr("0.075 s off"))));
 }
 
-// Trackers that correct a pose write it once more under the same time.
+// Trackers that correct a pose write it again with the same time.
 TEST_F(Recording, UsesLastOfLinesWithSameTime) {
   write_tum(
       "1.00 0 0 0 0 0 0 1\n1.000 5 0 0 0 0 0 1\n1.10 1 0 0 0 0 0 1\n1.10 2 0 0 0 0 0 1\n"
@@ -72,7 +72,7 @@ TEST_F(Recording, UsesLastOfLinesWithSameTime) {
                                   "is used"))));
 }
 
-// As Windows programs write lists: a byte-order mark, backslashes, quotes, line ends of their own.
+// Lists as Windows programs write them: byte order mark, backslashes, quotes and CRLF line ends.
 TEST_F(Recording, ReadsListsFromWindowsPrograms) {
   write_tum(
       "\xEF\xBB\xBF"

@@ -1,4 +1,4 @@
-/// Rawlogs that MRPT's own library writes, for tests.
+/// Rawlogs written by MRPT's library, for tests.
 #pragma once
 
 #include <cstdint>
@@ -26,10 +26,10 @@ using mrpt::obs::CObservation3DRangeScan;
 using mrpt::poses::CPose3D;
 using Objects = std::vector<mrpt::serialization::CSerializable::Ptr>;
 
-/// Of the sensor on its carrier.
+/// Pose of the sensor on its platform.
 inline const CPose3D mount(0.3, -0.2, 0.1, 0.4, -0.3, 0.2);
 
-/// An image of 32 x 24 pixels, a fifth of them without a return.
+/// Returns a depth image of 32 x 24 pixels. A fifth of them are no-return pixels.
 inline std::shared_ptr<CObservation3DRangeScan> range_scan(double time,
                                                            const std::string& label = "DEPTH") {
   auto scan = std::make_shared<CObservation3DRangeScan>();
@@ -102,7 +102,7 @@ class Rawlog : public testing::Test {
     return what;
   }
 
-  /// The scan as of a survey that takes all points in.
+  /// Returns the points of a frame for a survey without a range filter.
   static std::vector<Eigen::Vector3f> points(const RawlogFrame& frame) {
     return make_scan(frame, {.is_scanner = true}, {}).scan.points;
   }

@@ -23,14 +23,14 @@ using tests::read_content;
 using tests::run_skycap;
 using tests::TestFolder;
 
-/// The mission with what `flight` says beside its vehicle.
+/// Returns the mission with the keys in `flight` instead of its vehicle.
 std::string fleet_mission(const std::string& flight) {
   std::string text = flight_mission();
   const std::string vehicle = "vehicle: generic,";
   return text.replace(text.find(vehicle), vehicle.size(), flight + ",");
 }
 
-/// The package of one survey by two vehicles, which all tests below only read.
+/// Returns the package of a survey for two vehicles. All tests below only read it.
 const TestFolder& package() {
   static const TestFolder folder;
   static const bool is_made = [] {
@@ -57,7 +57,7 @@ auto check(const std::string& route, const std::vector<std::string>& more = {}) 
   return run_skycap(arguments);
 }
 
-/// The package's fleet in another folder, where tests may spoil it.
+/// Copy of the package's fleet files that tests may corrupt.
 class CorruptedFleet {
  public:
   CorruptedFleet() {
@@ -68,7 +68,7 @@ class CorruptedFleet {
 
   std::string table() const { return folder_ / "timetable.csv"; }
 
-  /// Puts `to` into a field of a line, both counted from 1.
+  /// Replaces a field of a line. Both are counted from 1.
   void set(std::size_t line, std::size_t field, const std::string& to) {
     std::vector<std::string> lines = flight::split_lines(read_content(table()));
     std::vector<std::string> fields = flight::split(lines.at(line - 1), ',');
@@ -126,7 +126,7 @@ TEST(Fleet, KeepsSeparationInSimulatedFlights) {
 TEST(Fleet, RejectsTimetablesThatViolateSeparation) {
   CorruptedFleet corrupted;
   EXPECT_EQ(check(corrupted.table()).exit_code, 0);
-  // Pads seven metres apart, both up at the same time.
+  // The pads are 7 m apart, and both vehicles take off at the same time.
   corrupted.set(2, 5, "0");
   corrupted.set(3, 5, "0");
   const auto together = check(corrupted.table(), {"--set", "flight.separation=20"});
@@ -194,7 +194,7 @@ TEST(Fleet, ReassignsViewsOfLostVehicle) {
   EXPECT_THAT(export_rest({"--after", "3"}).err, HasSubstr("requires --lost"));
 }
 
-// A list of one is the vehicle: the same settings, and so the same survey and files.
+// A list of one vehicle gives the same settings, survey and files as the single vehicle.
 TEST(Fleet, EqualsSingleVehicleForListOfOne) {
   const auto settings = [](const std::string& flight) {
     return package::settings_json(config::parse_mission(fleet_mission(flight), "m.yaml"));
@@ -249,7 +249,7 @@ TEST(Fleet, RejectsContradictoryKeys) {
               HasSubstr("key flight.style conflicts with flight.vehicles"));
 }
 
-// Along the side that the first pad is at, to either side in turn.
+// In a row along the target's side with the first pad, alternately on both sides of that pad.
 TEST(Fleet, PutsDefaultPadsInRow) {
   const config::MissionSetup mission = config::parse_mission(
       fleet_mission("vehicles: [generic, generic, generic], separation: 9"), "m.yaml");

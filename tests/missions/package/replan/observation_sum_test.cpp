@@ -19,19 +19,20 @@ std::vector<GainField::Target> targets_weighing(const std::vector<float>& weight
   return targets;
 }
 
-// 1 - sum of w exp(-H) / sum of w, by hand.
+// Computed by hand: 1 - sum of w exp(-H) / sum of w.
 TEST(ObservationSum, MatchesCoverageModel) {
   ObservationSum sum(targets_weighing({1.0F, 3.0F}));
   EXPECT_EQ(sum.covered(), 0.0);
   sum.add(observation_strengths(std::vector<Observation>{{0, 1.0F}, {1, 0.5F}}));
   sum.add(observation_strengths(std::vector<Observation>{{1, 1.5F}}));
   const double missing = (std::exp(-1.0) + 3.0 * std::exp(-2.0)) / 4.0;
-  EXPECT_NEAR(sum.covered(), 1.0 - missing, 1e-6);  // weights and shares of 20 and 24 bits
+  // Weights have 20 bits and fractions have 24 bits.
+  EXPECT_NEAR(sum.covered(), 1.0 - missing, 1e-6);
   EXPECT_NEAR(static_cast<double>(sum.missing(1)) / static_cast<double>(sum.missing(0)),
               3.0 * std::exp(-1.0), 1e-5);
 }
 
-// Hazards of a 256th: off by half of that at most, by chance either way.
+// Hazards are rounded to 1/256. The error is at most half of that, with random sign.
 TEST(ObservationSum, LimitsErrorOfRoundedHazards) {
   ObservationSum sum(targets_weighing({2.0F}));
   double hazard = 0.0;
@@ -43,7 +44,7 @@ TEST(ObservationSum, LimitsErrorOfRoundedHazards) {
   }
 }
 
-// Views come and go ten thousand times in a search; nothing may stay of those that went.
+// A search adds and removes views ten thousand times. Removed views must leave no residue.
 TEST(ObservationSum, ForgetsRemovedViewsExactly) {
   std::mt19937_64 random(5);
   std::vector<float> weights;

@@ -1,4 +1,4 @@
-// A mission chosen anew from its survey to its files, by the program.
+// Replanned mission from the survey to its files, by the program.
 
 #include "missions/package/replanned_mission.h"
 
@@ -23,7 +23,7 @@ using tests::read_content;
 using tests::run_skycap;
 using tests::TestFolder;
 
-/// A survey whose mission was chosen anew, and the same survey with its own views.
+/// Returns packages of a survey with a replanned mission and of the same survey with its own views.
 const TestFolder& packages() {
   static const TestFolder folder;
   static const bool are_made = [] {
@@ -65,7 +65,7 @@ TEST(ReplannedMission, IsFasterWithoutLessPredictedCoverage) {
   EXPECT_EQ(replanned.at("replanned").at("pieces").get<std::size_t>(), segments);
 }
 
-// What it is compared with is the mission that the survey leaves without it.
+// The reference for the comparison is the survey's own mission.
 TEST(ReplannedMission, IsComparedWithSurveyMission) {
   const json own = read_summary("survey").at("flight");
   EXPECT_FALSE(own.contains("replanned"));
@@ -84,8 +84,9 @@ TEST(ReplannedMission, KeepsSurveyFilesUnchanged) {
   }
 }
 
-// The dose model promises shares of what was measured, the judge measures shares of what is
-// visible: of this teapot nearly the same. A tenth is more than both scatter by.
+// The coverage model predicts fractions of the measured surface. The evaluation measures fractions
+// of the visible surface, which are similar for this teapot. The tolerance of 0.1 exceeds the
+// scatter of both.
 TEST(ReplannedMission, ReachesSurveyCoverageInSimulatedReflight) {
   const json summary = read_summary("anew");
   const double again =
@@ -94,7 +95,7 @@ TEST(ReplannedMission, ReachesSurveyCoverageInSimulatedReflight) {
   EXPECT_LE(again, 1.0);
 }
 
-// Frames on the survey's ways have seen what its few views have not: the mission is to cover that.
+// En-route frames have observed surface that the few views have not. The mission must cover it.
 TEST(ReplannedMission, CoversSurfaceSeenByEnRouteFrames) {
   const TestFolder& folder = packages();
   const auto run = run_skycap({"plan", folder / "m.yaml", "--out", folder / "moving", "--set",
@@ -118,7 +119,7 @@ TEST(ReplannedMission, IsSameForAnyThreadCount) {
             tests::results_in(folder / "threads", timed));
 }
 
-// Against the scene as it is, every leg of every file.
+// Checks each leg in each file against the ground truth.
 TEST(ReplannedMission, KeepsClearanceFromGroundTruthInAllFiles) {
   const TestFolder& folder = packages();
   for (const char* extension : {"plan", "waypoints", "kml", "geojson", "csv"}) {
@@ -129,7 +130,8 @@ TEST(ReplannedMission, KeepsClearanceFromGroundTruthInAllFiles) {
   }
 }
 
-// Past its views: faster than with stops, each view's picture in the trajectory, and proven.
+// Fly-through capture is faster than stop-and-capture, all captures are in the trajectory, and it
+// is verified.
 TEST(ReplannedMission, CapturesViewsInFlyThrough) {
   const TestFolder& folder = packages();
   const auto run = run_skycap({"plan", folder / "m.yaml", "--out", folder / "passing", "--threads",
@@ -193,7 +195,7 @@ TEST(ReplannedMission, ExportsSameFilesAgain) {
   EXPECT_EQ(fly_test_run.exit_code, 0) << fly_test_run.out << fly_test_run.err;
 }
 
-// On request the survey's own mission is written after all.
+// On request, the export contains the survey's own mission.
 TEST(ReplannedMission, ExportsSurveyMissionOnRequest) {
   const TestFolder& folder = packages();
   const auto run = run_skycap({"export", folder / "anew", "--format", "csv", "--set",

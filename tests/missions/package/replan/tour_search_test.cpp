@@ -1,5 +1,5 @@
-// The search in small worlds whose answers are known: targets on a plane, views that see all within
-// a radius of the place below them, a vehicle that flies a metre in a second.
+// Tour search in small worlds with known results. The targets are on a plane, each view observes
+// all targets within a radius of the point below it, and the vehicle flies at 1 m/s.
 
 #include "missions/package/replan/tour_search.h"
 
@@ -21,12 +21,12 @@ using survey::surfel::GainField;
 using survey::surfel::Observation;
 using testing::SizeIs;
 
-constexpr double rest = 2.0;  ///< at each view [s]
+constexpr double rest = 2.0;  ///< stop time for each view [s]
 constexpr float certain = 7.0F;
 
 View down_at(double x, double y, double z = 1.0) { return {{x, y, z}, -Vector3d::UnitZ()}; }
 
-/// Views see what is within `radius` of the place below them.
+/// Views observe all targets within `radius` of the point below them.
 struct PlaneWorld {
   explicit PlaneWorld(double radius) {
     problem.observations = [this, radius](const View& view) {
@@ -53,7 +53,7 @@ struct PlaneWorld {
   PlaneWorld(const PlaneWorld&) = delete;
   PlaneWorld& operator=(const PlaneWorld&) = delete;
 
-  /// Eight targets round a place, and one there.
+  /// Adds a target and eight more on a circle around it.
   void add_cluster(double x, double y, double radius) {
     add_target(x, y);
     for (int i = 0; i < 8; ++i) {
@@ -71,7 +71,7 @@ struct PlaneWorld {
     return view == nullptr ? Vector3d::Zero() : view->position;
   }
 
-  /// Of a tour whose ways are all free.
+  /// Returns the time of a tour with straight paths.
   static double time(const std::vector<View>& tour) {
     double sum = rest * static_cast<double>(tour.size());
     Vector3d at = Vector3d::Zero();
@@ -109,8 +109,9 @@ TEST(RemoveViews, KeepsNeededViews) {
   EXPECT_EQ(found.covered, covered_by(world.problem, tour));
 }
 
-// Clusters of radius 0.5 on a line from home, seen whole from within 0.5 of their middles: the
-// least is three views, and to the nearest place that sees the last one and back, on the ground.
+// Clusters of radius 0.5 on a line from home, each observed completely from within 0.5 of its
+// centre. The optimum is three views and the path to the nearest position that observes the last
+// cluster, and back, at ground level.
 TEST(Anneal, FindsNearOptimalToursInKnownWorld) {
   PlaneWorld world(1.0);
   for (const double x : {10.0, 20.0, 30.0}) world.add_cluster(x, 0, 0.5);
@@ -133,7 +134,7 @@ TEST(Anneal, FindsNearOptimalToursInKnownWorld) {
   }
 }
 
-/// Sees nothing at its stops, and within a metre all along its ways.
+/// Observations are made only en route, within 1 m of each leg.
 void measure_en_route(PlaneWorld& world) {
   world.problem.observations = [](const View&) { return std::vector<Observation>(); };
   world.problem.leg_observations = [&world](const View* from, const View* to) {
@@ -150,8 +151,8 @@ void measure_en_route(PlaneWorld& world) {
   };
 }
 
-// Targets in a line from home: whoever measures on the way flies to where the last one is in sight,
-// and back.
+// Targets on a line from home. With observations en route, the optimum is to fly until the last
+// target is visible, and back.
 TEST(Anneal, CountsEnRouteMeasurements) {
   PlaneWorld world(1.0);
   for (int i = 1; i <= 20; ++i) world.add_target(i, 0.0);
@@ -167,7 +168,7 @@ TEST(Anneal, CountsEnRouteMeasurements) {
   }
 }
 
-// A stop that no way needs is spared, one that a way is bent by is kept.
+// A stop that is not needed for its leg is removed. A stop that bends the path to a target is kept.
 TEST(RemoveViews, CountsEnRouteCoverageOfRemainingLegs) {
   PlaneWorld world(1.0);
   world.add_target(5, 0);
@@ -181,8 +182,8 @@ TEST(RemoveViews, CountsEnRouteCoverageOfRemainingLegs) {
   EXPECT_EQ(found.covered, covered_by(world.problem, found.views));
 }
 
-// Three clusters that are seen from a straight line and from beside it: who loses time in bends
-// takes the line, though it takes more views.
+// Three clusters are visible from a straight line and from positions next to it. If bends cost
+// time, the line is faster although it needs more views.
 TEST(Anneal, AccountsForTimeInBends) {
   PlaneWorld world(1.0);
   for (const double x : {10.0, 20.0, 30.0}) world.add_cluster(x, 0, 0.5);
@@ -215,7 +216,7 @@ TEST(Anneal, AccountsForTimeInBends) {
   }
 }
 
-// Two views that each see half of it, where one between them sees all.
+// Two views each observe half of the cluster. One view between them observes all of it.
 TEST(Anneal, ReplacesTwoViewsByOne) {
   PlaneWorld world(2.0);
   world.add_cluster(15, 0, 1.5);
@@ -225,7 +226,8 @@ TEST(Anneal, ReplacesTwoViewsByOne) {
   EXPECT_THAT(anneal(world.problem, start, target_coverage, {}).views, SizeIs(1));
 }
 
-// Property: whatever it begins from, what it gives covers as much and takes no longer.
+// Property: from any initial tour, the result has at least the same coverage and takes at most the
+// same time.
 TEST(Anneal, NeverReturnsSlowerOrLessCoveringTour) {
   std::mt19937_64 random(7);
   const auto random_coordinate = [&] {
@@ -261,7 +263,7 @@ TEST(Anneal, IsDeterministic) {
   EXPECT_EQ(one.time, two.time);
 }
 
-// Nothing below 5 m is allowed, nothing east of 12 m is free.
+// Views below 5 m are not allowed, and space east of 12 m is not free.
 TEST(Anneal, RespectsLimitsAndFreeSpace) {
   PlaneWorld world(4.0);
   for (const double x : {4.0, 9.0, 14.0}) world.add_cluster(x, 0, 1.0);
@@ -277,8 +279,8 @@ TEST(Anneal, RespectsLimitsAndFreeSpace) {
   }
 }
 
-// North and south of a wall that is dear to get round, from the gap at its western end: each side
-// is to be visited once, so that the wall is passed twice at most.
+// Views north and south of a wall with a costly path around its western end. Each side should be
+// visited once, so the wall is passed at most twice.
 TEST(Anneal, CrossesWallOnlyOnceEachDirection) {
   PlaneWorld world(1.0);
   std::vector<View> start;
@@ -305,7 +307,7 @@ TEST(Anneal, CrossesWallOnlyOnceEachDirection) {
   EXPECT_GT(found.time, PlaneWorld::time(found.views)) << "a blocked way is not free of charge";
 }
 
-// East of 20 m nothing has a way home: what is there can be seen from before it, too.
+// There are no return paths east of 20 m. Targets there are also visible from the west.
 TEST(Anneal, AvoidsPositionsWithoutReturnPath) {
   PlaneWorld world(3.0);
   world.add_cluster(10, 0, 0.5);
@@ -321,7 +323,8 @@ TEST(Anneal, AvoidsPositionsWithoutReturnPath) {
   EXPECT_NEAR(found.time, PlaneWorld::time(found.views), 1e-9) << "nothing is charged";
 }
 
-// What the survey covered from a place without a way home is covered from elsewhere.
+// Surface that the survey observed from a position without a return path is observed from another
+// position.
 TEST(Anneal, ReplacesViewsWithoutReturnPath) {
   PlaneWorld world(3.0);
   world.add_cluster(10, 0, 0.5);

@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t count = 1003;  // no multiple of a vector's length
+constexpr std::size_t count = 1003;  // not a multiple of a vector length
 
 class VisibilityKernels : public testing::Test {
  protected:
@@ -67,7 +67,8 @@ class VisibilityKernels : public testing::Test {
                             .min_cosine = 0.2F};
 };
 
-// Twin in double precision. Coordinates within a thousandth of a pixel's edge may round either way.
+// Reference in double precision. Coordinates within 0.001 of a pixel's edge may be rounded either
+// way.
 TEST_F(VisibilityKernels, ProjectPointsLikePinholeCamera) {
   std::vector<std::uint32_t> pixels(count);
   std::vector<float> depths(count);
@@ -91,7 +92,8 @@ TEST_F(VisibilityKernels, ProjectPointsLikePinholeCamera) {
     const double pixel = std::floor(row + 0.5) * raster.stride + std::floor(column + 0.5);
     EXPECT_EQ(pixels[i], is_inside ? pixel : raster.outside) << "point " << i;
     inside += is_inside ? 1 : 0;
-    // At 40 px a metre, 0.1 m are four pixels; twice that, and an eighth of them at 8 m.
+    // At 40 px per metre, 0.1 m are four pixels. The size is twice that, and an eighth of it at 8
+    // m.
     if (is_inside) {
       EXPECT_NEAR(sizes[i], std::max(2.0, std::ceil(8.0 / p.z() - 1e-5)), 0.0) << "point " << i;
     }
@@ -99,8 +101,8 @@ TEST_F(VisibilityKernels, ProjectPointsLikePinholeCamera) {
   EXPECT_GT(inside, 300);
 }
 
-// Twin: each square drawn pixel by pixel. Points come as near as a few centimetres, where squares
-// are wider than the raster.
+// Reference: each square drawn pixel by pixel. Some points are only a few centimetres away, where
+// squares are wider than the raster.
 TEST_F(VisibilityKernels, DrawDepthsOfNearestSquares) {
   std::mt19937_64 random(8);
   std::uniform_real_distribution<float> nearness(0.02F, 1.0F);
@@ -155,12 +157,12 @@ TEST_F(VisibilityKernels, FindTargetsThatFaceSensorInsideFrustum) {
     const std::array<double, 5> margins = {p.z() - 2.0, 7.0 - p.z(), 0.75 * p.z() - std::abs(p.x()),
                                            0.62 * p.z() - std::abs(p.y()), cosine - 0.2};
     const double min = *std::ranges::min_element(margins);
-    if (std::abs(min) < 1e-4) continue;  // single precision may decide otherwise
+    if (std::abs(min) < 1e-4) continue;  // single precision may decide differently
     EXPECT_EQ(in_view[i], min > 0.0 ? 1U : 0U) << "target " << i;
     if (in_view[i] == 0) {
       EXPECT_EQ(pixels[i], raster.outside);
     }
-    // A pixel off the axis sees less of the sphere by the cube of its angle's cosine.
+    // A pixel off the axis covers a smaller part of the sphere, by the cube of its angle's cosine.
     if (in_view[i] != 0) {
       EXPECT_NEAR(densities[i], 1e4 * cosine * std::pow(p.norm() / p.z(), 3) / p.squaredNorm(),
                   1e-4 * densities[i]);
