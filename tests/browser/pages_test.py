@@ -347,7 +347,7 @@ scan: {sensor: %s, frame_period: 1.0, navigation: {horizontal_sigma: 0.2},
                 self.wait_for(page, f"document.body.innerText.includes('{number + 1} scan')")
                 answer = json.loads(run(*call).stdout)
             self.assertEqual(answer["state"], "view_limit")
-            self.wait_for(page, "document.body.innerText.includes('skycap finish writes the package')")
+            self.wait_for(page, "document.body.innerText.includes('run skycap finish to write the package')")
             self.assertEqual(page.get("""["ground", "views"].map((name) =>
                 window.shown.panel.viewer.layers[name].visible)"""), [False, True])
             self.assertEqual(page.get("document.getElementById('colour').value"), "height")
