@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
 #include <cstddef>
 
@@ -79,9 +78,9 @@ std::vector<std::string> make_litchi_notes(const FlightPlan&) {
       "\"Straight Lines\"; the gimbal pitch is rounded to whole degrees"};
 }
 
-/// All formats, in the order of Format. A new format requires a row here, an enumerator, and a
-/// source file with its writer, reader and checks.
-const std::array<FormatRecord, 9> records{{
+/// All formats, in the order of Format. A new format requires a row here, an enumerator with its
+/// case in is_format(), and a source file with its writer, reader and checks.
+constexpr auto records = std::to_array<FormatRecord>({
     {.info = {Format::plan, "plan", ".plan", "above take-off; home above mean sea level"},
      .captures_images = true,
      .holds_photo_runs = true,
@@ -135,24 +134,19 @@ const std::array<FormatRecord, 9> records{{
      .write = write_litchi,
      .validate = validate_litchi,
      .read_positions =
-         [](const auto& content, const auto& site, const auto& pad) {
-           return geodetic_positions(content, site, pad, read_litchi);
-         },
+         [](const auto& content, const auto& site,
+            const auto& pad) { return geodetic_positions(content, site, pad, read_litchi); },
      .notes = make_litchi_notes},
     {.info = {Format::csv, "csv", ".csv", "local frame"},
      .supports_curves = true,
-     .write =
-         [](const FlightPlan& plan) {
-           return write_trajectory_csv(compute_states(plan), Frame::enu);
-         },
+     .write = [](const FlightPlan&
+                     plan) { return write_trajectory_csv(compute_states(plan), Frame::enu); },
      .validate = validate_trajectory_csv,
      .read_positions = csv_positions},
     {.info = {Format::ned_csv, "ned-csv", ".ned.csv", "local frame, down"},
      .supports_curves = true,
-     .write =
-         [](const FlightPlan& plan) {
-           return write_trajectory_csv(compute_states(plan), Frame::ned);
-         },
+     .write = [](const FlightPlan&
+                     plan) { return write_trajectory_csv(compute_states(plan), Frame::ned); },
      .validate = validate_trajectory_csv,
      .read_positions = csv_positions},
     {.info = {Format::tum, "tum", ".tum", "local frame"},
@@ -160,12 +154,35 @@ const std::array<FormatRecord, 9> records{{
      .write = [](const FlightPlan& plan) { return write_tum(camera_poses(compute_states(plan))); },
      .validate = validate_tum,
      .read_positions = tum_positions},
-}};
+});
+
+/// Whether a number is that of a format. The compiler reports a format without a case.
+constexpr bool is_format(Format format) {
+  switch (format) {
+    case Format::plan:
+    case Format::waypoints:
+    case Format::kmz:
+    case Format::kml:
+    case Format::geojson:
+    case Format::litchi:
+    case Format::csv:
+    case Format::ned_csv:
+    case Format::tum:
+      return true;
+  }
+  return false;
+}
+
+constexpr bool has_row_for_each_format() {
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    if (records[i].info.format != static_cast<Format>(i)) return false;
+  }
+  return !is_format(static_cast<Format>(records.size()));
+}
+static_assert(has_row_for_each_format(), "records: one row for each Format, in the same order");
 
 const FormatRecord& find_record(Format format) {
-  const FormatRecord& record = records.at(static_cast<std::size_t>(format));
-  assert(record.info.format == format);
-  return record;
+  return records.at(static_cast<std::size_t>(format));
 }
 
 }  // namespace
@@ -229,9 +246,10 @@ Format detect_format(const std::filesystem::path& path, const std::string& conte
   for (const FormatInfo& info : formats()) {
     if (name.ends_with(info.extension)) return info.format;
   }
-  throw Error(ErrorKind::bad_file, path.string() +
-                                       " is not a route file: its name must end in .plan, "
-                                       ".waypoints, .txt, .kmz, .kml, .geojson, .csv or .tum");
+  std::string extensions;
+  for (const FormatInfo& info : formats()) extensions += std::string(info.extension) + ", ";
+  throw Error(ErrorKind::bad_file, path.string() + " is not a route file: its name must end in " +
+                                       extensions + "or .txt");
 }
 
 std::vector<Vector3d> read_route(const std::filesystem::path& path, const Site& site,

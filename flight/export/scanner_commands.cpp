@@ -13,24 +13,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Returns the format's name for users, or an empty string if it commands no sensor.
-std::string commanding_format(Format format) {
-  switch (format) {
-    case Format::plan:
-    case Format::waypoints:
-    case Format::kmz:
-    case Format::litchi:
-      return format_info(format).extension;
-    case Format::kml:
-    case Format::geojson:
-    case Format::csv:
-    case Format::ned_csv:
-    case Format::tum:
-      break;
-  }
-  return "";
-}
-
 /// Changes heading and gimbal pitch so that the camera axis coincides with the scanner's optical
 /// axis.
 void aim_at(FlightPlan& plan, const ScannerAim& aim) {
@@ -117,8 +99,8 @@ std::string commanded_scanner(int payload) {
 
 FlightPlan with_scanner_commands(FlightPlan plan, Format format, const ScannerAim& aim,
                                  double energy_left, std::vector<std::string>& notes) {
-  const std::string extension = commanding_format(format);
-  if (extension.empty()) return plan;
+  if (!captures_images(format)) return plan;  // The format commands no sensor.
+  const std::string extension = format_info(format).extension;
   const std::string name = commanded_scanner(plan.vehicle.wpml.payload);
   if (name.empty()) {
     notes.push_back("start the recording of the scanner before take-off: " + extension +

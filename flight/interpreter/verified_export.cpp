@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <system_error>
 
+#include "flight/export/scanner_commands.h"
 #include "flight/interpreter/flight_facts.h"
 #include "flight/interpreter/interpret.h"
 #include "flight/interpreter/interpreted_route.h"
@@ -42,7 +43,9 @@ ExportResult export_flight(const FlightPlan& plan, Format format, const FreeSpac
   const FlightFacts facts = make_flight_facts(plan);
   const InterpretedRoute route = interpret(content, format, facts);
   reject(route.problems);
-  if (captures_images(format)) reject(missing_photographs(route, facts));
+  // A scanner captures no images. Its views are verified with the recording.
+  const bool is_scanned = !commanded_scanner(plan.vehicle.wpml.payload).empty();
+  if (captures_images(format) && !is_scanned) reject(missing_photographs(route, facts));
   const double clearance = std::max(0.0, plan.clearance - rounding_bound);
   const RouteVerification verification =
       verify(route, space, space_over_pad(plan), clearance, plan.clearance + reported_surplus);

@@ -110,10 +110,29 @@ TEST_P(EveryFormat, WritesFileOnlyAfterVerification) {
   EXPECT_THAT(check_route(points, space, plan.clearance - rounding_bound), IsEmpty());
 }
 
-INSTANTIATE_TEST_SUITE_P(Export, EveryFormat,
-                         testing::Values(Format::plan, Format::waypoints, Format::kmz, Format::kml,
-                                         Format::geojson, Format::litchi, Format::csv,
-                                         Format::ned_csv, Format::tum),
+// The interpreter reads every capture of a format that commands the camera, with its direction.
+TEST_P(EveryFormat, InterpretsCapturesIfFormatCommandsCamera) {
+  const Format format = GetParam();
+  const FlightPlan plan = sample_plan(vehicle_for(format));
+  int planned = 0, written = 0;
+  for (const Waypoint& waypoint : plan.waypoints) planned += waypoint.captures;
+  ASSERT_GT(planned, 0);
+  const InterpretedRoute route = interpret(write(plan, format), format, make_flight_facts(plan));
+  for (const InterpretedStop& stop : route.stops) {
+    EXPECT_TRUE(std::isfinite(stop.yaw_deg)) << stop.item;
+    written += stop.captures;
+  }
+  EXPECT_EQ(written, captures_images(format) ? planned : 0)
+      << "add the format to flight/interpreter/interpret.cpp";
+}
+
+std::vector<Format> all_formats() {
+  std::vector<Format> all;
+  for (const FormatInfo& info : formats()) all.push_back(info.format);
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(Export, EveryFormat, testing::ValuesIn(all_formats()),
                          [](const auto& parameter) {
                            std::string name = find_info(parameter.param).name;
                            std::replace(name.begin(), name.end(), '-', '_');

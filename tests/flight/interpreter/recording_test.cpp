@@ -1,19 +1,27 @@
 // Commands of a KMZ file for a laser scanner, as read by the interpreter.
 #include "flight/interpreter/recording.h"
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <limits>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <pugixml.hpp>
 
 #include "flight/export/map_files.h"
 #include "flight/export/scanner_commands.h"
 #include "flight/export/wpml_file.h"
+#include "flight/interpreter/verified_export.h"
 #include "flight/interpreter/wpml_interpreter.h"
 #include "geometry/angle.h"
 #include "geometry/error.h"
 #include "tests/flight/export/sample_plan.h"
+#include "tests/support/temporary_folder.h"
 
 namespace skycap::flight {
 namespace {
@@ -84,6 +92,15 @@ TEST(Recording, KmzOfAScannerIsRecordedAndLooksWhereThePlanDoes) {
   EXPECT_THAT(validate_kmz(write_kmz(commanded())), IsEmpty());
 }
 
+TEST(Recording, KmzIsWrittenAfterVerification) {
+  const testing_support::TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "mission.kmz";
+  const ExportResult result =
+      export_flight(commanded(), Format::kmz, KnownSpace(sample_site()), file);
+  EXPECT_TRUE(std::filesystem::exists(file));
+  EXPECT_THAT(result.captures, IsEmpty());
+}
+
 // The file is checked against the scanner directions on the airframe of the plan.
 TEST(Recording, HeadingAndGimbalTakeThePlaceOfTheMount) {
   const FlightPlan plan = plan_with(zenmuse_l2);
@@ -113,6 +130,99 @@ TEST(Recording, KmzNamesThePayloadAndItsSettings) {
   }
   EXPECT_THAT(good().template_kml, HasSubstr("<wpml:samplingRate>240000"));
   EXPECT_THAT(good().template_kml, HasSubstr("<wpml:scanningMode>nonRepetitive"));
+}
+
+/// Elements of scanner commands with the values that DJI's WPML documentation lists (common
+/// elements: payloadInfo, payloadParam, actionTrigger, gimbalRotate, hover, recordPointCloud).
+/// payloadEnumValue: 90742 (L1) in the edition of 2022 and in DJI's WPMZ library, 84 (EP810, the
+/// L2) in that library. An empty list stands for numbers above the minimum.
+struct DocumentedElement {
+  const char* parent;
+  const char* name;
+  std::vector<std::string> values;
+  double min = -std::numeric_limits<double>::infinity();
+};
+
+const std::vector<DocumentedElement>& documented_elements() {
+  static const std::vector<std::string> flag{"0", "1"};
+  static const std::vector<DocumentedElement> elements{
+      {"payloadInfo", "payloadEnumValue", {"90742", "84"}},
+      {"payloadInfo", "payloadSubEnumValue", {"0"}},
+      {"payloadInfo", "payloadPositionIndex", {"0", "1", "2"}},
+      {"payloadParam", "payloadPositionIndex", {"0", "1", "2"}},
+      {"payloadParam", "imageFormat", {"wide", "zoom", "ir", "narrow_band", "visible", "visable"}},
+      {"payloadParam", "returnMode", {"singleReturnStrongest", "dualReturn", "tripleReturn"}},
+      {"payloadParam", "samplingRate", {"60000", "80000", "120000", "160000", "180000", "240000"}},
+      {"payloadParam", "scanningMode", {"repetitive", "nonRepetitive"}},
+      {"payloadParam", "modelColoringEnable", flag},
+      {"actionTrigger",
+       "actionTriggerType",
+       {"reachPoint", "betweenAdjacentPoints", "multipleTiming", "multipleDistance"}},
+      {"action", "actionId", {}, 0.0},
+      {"action", "actionActuatorFunc", {"gimbalRotate", "hover", "recordPointCloud"}},
+      {"hover", "hoverTime", {}, 1e-3},
+      {"recordPointCloud", "payloadPositionIndex", {"0", "1", "2"}},
+      {"recordPointCloud",
+       "recordPointCloudOperate",
+       {"startRecord", "pauseRecord", "resumeRecord", "stopRecord"}},
+      {"gimbalRotate", "gimbalHeadingYawBase", {"north"}},
+      {"gimbalRotate", "gimbalRotateMode", {"relativeAngle", "absoluteAngle"}},
+      {"gimbalRotate", "gimbalPitchRotateEnable", flag},
+      {"gimbalRotate", "gimbalPitchRotateAngle", {}, -120.0},
+      {"gimbalRotate", "gimbalRollRotateEnable", flag},
+      {"gimbalRotate", "gimbalRollRotateAngle", {}, -180.0},
+      {"gimbalRotate", "gimbalYawRotateEnable", flag},
+      {"gimbalRotate", "gimbalYawRotateAngle", {}, -180.0},
+      {"gimbalRotate", "gimbalRotateTimeEnable", flag},
+      {"gimbalRotate", "gimbalRotateTime", {}, 0.0},
+      {"gimbalRotate", "payloadPositionIndex", {"0", "1", "2"}},
+  };
+  return elements;
+}
+
+/// Returns the name without namespace prefix; actuator parameters have the name of their action.
+std::string local_name(const pugi::xml_node& node) {
+  const std::string name = node.name();
+  if (name == "wpml:actionActuatorFuncParam") {
+    return node.parent().child("wpml:actionActuatorFunc").text().get();
+  }
+  return name.starts_with("wpml:") ? name.substr(5) : name;
+}
+
+/// Returns the elements of scanner commands that are not documented, or have another value.
+std::vector<std::string> undocumented(const std::string& text) {
+  pugi::xml_document document;
+  EXPECT_TRUE(document.load_string(text.c_str()));
+  std::vector<std::string> found;
+  std::size_t checked = 0;
+  for (const pugi::xpath_node& match : document.select_nodes("//*[not(*)]")) {
+    const std::string parent = local_name(match.node().parent());
+    const auto& all = documented_elements();
+    if (std::ranges::none_of(all, [&](const auto& one) { return parent == one.parent; })) continue;
+    ++checked;
+    const std::string name = local_name(match.node()), value = match.node().text().get();
+    const bool is_right = std::ranges::any_of(all, [&](const DocumentedElement& one) {
+      if (parent != one.parent || name != one.name) return false;
+      if (one.values.empty()) return match.node().text().as_double(-1e9) >= one.min;
+      return std::ranges::find(one.values, value) != one.values.end();
+    });
+    if (!is_right) found.push_back(parent + "/" + name + "=" + value);
+  }
+  EXPECT_GT(checked, 50U);
+  return found;
+}
+
+TEST(Recording, WritesOnlyDocumentedElementsAndValues) {
+  for (const int payload : {zenmuse_l1, zenmuse_l2}) {
+    std::vector<std::string> notes;
+    const FlightPlan plan =
+        with_scanner_commands(plan_with(payload), Format::kmz, to_the_left, plenty, notes);
+    const KmzContent content = unpack_kmz(write_kmz(plan));
+    EXPECT_THAT(undocumented(content.template_kml), IsEmpty()) << payload;
+    EXPECT_THAT(undocumented(content.waylines_wpml), IsEmpty()) << payload;
+  }
+  EXPECT_THAT(undocumented(replaced(good().template_kml, "nonRepetitive", "petal")),
+              ElementsAre("payloadParam/scanningMode=petal"));
 }
 
 // The vehicle flies back and forth three times on the first and the last leg, which are verified.
