@@ -24,7 +24,7 @@ ROOT_PAGES = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")
 
 def scratch_folder(folder, program):
     """Lays out what the commands of the pages expect to find where they run."""
-    for name in ("missions", "docs"):
+    for name in ("missions", "docs", "examples", "tests"):
         (folder / name).symlink_to(ROOT / name)
     (folder / "build").mkdir()
     (folder / "build" / "release").symlink_to(program)

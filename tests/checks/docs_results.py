@@ -12,8 +12,9 @@ import tempfile
 PAGE = pathlib.PurePosixPath("docs/reference/results.md")
 LIST = re.compile(r"<!-- fields: (\S+) -->\n(.*?)<!-- end of fields -->", re.DOTALL)
 SPAN = re.compile(r"`([^`]+)`")
-# Objects that are listed once and occur at two places.
-ALIASES = {"flight.fleet.vehicles[].sorties[]": "flight.route.sorties[]"}
+# Objects that are listed once and occur in several places.
+ALIASES = {"flight.fleet.vehicles[].sorties[]": "flight.route.sorties[]",
+           "flight.written[].surface": "surface", "flight.written[].targets[]": "targets[]"}
 # Maps whose keys are names of parts or settings: their fields are not listed one by one.
 MAPS = ("settings", "planning_time_parts_s", "per_view[].planning_time_parts_s")
 
