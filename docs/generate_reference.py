@@ -132,6 +132,8 @@ def commands_part(build):
     listed = [[f"[`{name}`](#skycap-{name})", cell(meaning)] for name, _, meaning in
               ((row[0], row[1], (row[1] + " " + row[2]).strip()) for row in commands)]
     text = "\n" + table(["Command", "Purpose"], listed)
+    text += "\nOptions of the program, before or after the command:\n\n"
+    text += table(["Option", "Value", "Meaning"], argument_rows(overview.options()))
     for name, *_ in commands:
         text += command_text(program, name)
     return text + "\n"

@@ -80,7 +80,7 @@ def verified():
 
 def free_space():
     svg = Svg(860, 400, "How a voxel becomes free",
-              "A voxel is free when every pixel that its bounding ball touches, and a rim of one pixel, has measured farther.")
+              "A voxel is free if all pixels that its bounding sphere touches, plus a margin of one pixel, measured a point beyond it.")
     camera = (60, 210)
     wall = 720
     rays = [-0.24 + 0.04 * i for i in range(13)]
@@ -103,15 +103,15 @@ def free_space():
         svg.text(x, y + side * 0.707 + 18, label, 13, colour, "middle", bold=True, halo=True)
         svg.text(x, y + side * 0.707 + 34, note, 12, "soft", "middle", halo=True)
 
-    voxel(430, 262, 46, "green", "free", "all touched pixels saw farther")
+    voxel(430, 262, 46, "green", "free", "all touched pixels measured beyond it")
     voxel(560, 122, 46, "amber", "unknown", "touches pixels without return")
     voxel(wall - 6, 262, 46, "red", "occupied", "contains a measured point")
     svg.dimension(wall - 56, 350, wall, 350, "", "violet")
     svg.line(wall - 56, 180, wall - 56, 360, stroke="violet", width=1.4, dash="5 4")
     svg.text(wall - 28, 378, "map error", 12, "violet", "middle", halo=True)
-    svg.text(792, 132, "no return:\nproves nothing", 12, "amber", "middle", halo=True)
+    svg.text(792, 132, "no return:\nunknown", 12, "amber", "middle", halo=True)
     svg.text(40, 40, "A voxel is a quarter of the clearance wide: 0.5 m at 2.00 m", 13, "ink")
-    svg.text(40, 60, "The ball around it, and one more pixel on every side, must lie in front of the measured depths.", 12.5,
+    svg.text(40, 60, "Free: its bounding sphere, plus one pixel on each side, lies in front of the measured depths.", 12.5,
              "soft")
     return svg
 
@@ -221,7 +221,7 @@ def return_profile(mission):
     svg.line(left + 20, ground - climb * scale_z, left + 20, ground, stroke="amber", width=3, dash="3 5")
     svg.line(left, ground, right, ground, stroke="ink", width=2)
     svg.text(left + 20, ground + 18, "pad", 12, "ink", "middle")
-    svg.text(left + 44, ground + 18, "dashed: below the take-off climb, as the climb", 12, "amber")
+    svg.text(left + 44, ground + 18, "dashed: not verified, like the first metres of the climb", 12, "amber")
     svg.text((left + right) / 2, ground + 40, f"horizontal distance from the pad, 0 to {reach:.0f} m", 12.5, "ink", "middle")
     svg.text(left, 40, f"Return altitude {height:.0f} m above take-off: the lowest whole metre that is verified", 14, "ink", bold=True)
     svg.text(left, 60, f"{len(places)} waypoints of {mission['file']}; the return is verified from every point between them, too.", 12.5,

@@ -28,7 +28,7 @@ def survey_loop():
     svg.polyline([(790, 220), (790, 182)], stroke="amber", width=1.8)
     svg.arrow([(790, 182), (790, 146)], "amber")
     svg.text(796, 176, "rejected:", 12, "amber")
-    svg.text(796, 192, "another", 12, "amber")
+    svg.text(796, 192, "next one", 12, "amber")
     svg.arrow([(720, 60), (720, 30), (20, 30), (20, 396), (38, 396)], "violet", dash="5 4")
     svg.text(440, 22, "complete, or a limit is reached", 12.5, "violet", "middle")
     steps = [("order views", "shortest tour"), ("verify legs", "and every return"), ("split", "sorties by energy"),

@@ -53,14 +53,14 @@ def coverage_model():
             svg.circle(x0 + i * step, y0 + j * step, 3, fill="blue")
     svg.circle(x0 + 1.6 * step, y0 + 1.4 * step, 34, fill="green", fill_opacity=0.2, stroke="green")
     svg.circle(x0 + 1.6 * step, y0 + 1.4 * step, 2.5, fill="green")
-    svg.text(x0 + 2 * step, y0 + 4 * step + 14, "returns around a place;", 12, "soft", "middle")
+    svg.text(x0 + 2 * step, y0 + 4 * step + 14, "returns around a point;", 12, "soft", "middle")
     svg.text(x0 + 2 * step, y0 + 4 * step + 30, "circle: coverage distance r_d", 12, "soft", "middle")
     svg.text(700 + 52, 272, "Strengths of several\nviews add up:\nH = -ln(1 - F)", 12.5, "ink", "middle")
     return svg
 
 
 def free_space_memory():
-    svg = Svg(860, 360, "Free-space memory", "A place is empty, measured or unknown by its depth in a past image.")
+    svg = Svg(860, 360, "Free-space memory", "A point is empty, measured or unknown, depending on its depth in a past image.")
     eye = (70, 190)
     wall = [(520, 50), (520, 150), (600, 150), (600, 318)]
     svg.polygon([eye, (520, 60), (520, 150), (600, 166), (600, 310)], fill="green", fill_opacity=0.16)
@@ -71,14 +71,14 @@ def free_space_memory():
         svg.circle(*place, 3.5, fill="blue")
     svg.rect(46, 174, 26, 32, 4, fill="ink")
     svg.text(58, 226, "past view", 12, "ink", "middle")
-    for x, y, colour, label, note in ((350, 196, "green", "empty", "a past view saw farther"),
-                                      (600, 228, "blue", "measured", "a past view measured here"),
+    for x, y, colour, label, note in ((350, 196, "green", "empty", "in front of the measured surface"),
+                                      (600, 228, "blue", "measured", "on the measured surface"),
                                       (640, 96, "red", "unknown", "behind the measured surface")):
         svg.circle(x, y, 9, fill=colour, stroke="paper", width=2)
         svg.text(x + 16, y - 2, label, 13.5, colour, bold=True, halo=True)
         svg.text(x + 16, y + 15, note, 12, "ink", halo=True)
     svg.text(30, 28, "One projection per past depth image answers each query", 14, "ink", bold=True)
-    svg.text(30, 340, "Used for planning only. Legs are verified in measured space, where a ray without a return proves nothing.", 12.5,
+    svg.text(30, 340, "Used for planning only. Legs are verified separately: there, a ray without a return does not make space free.", 12.5,
              "soft")
     return svg
 
@@ -169,7 +169,7 @@ def line_of_sight():
 
 def view_selection():
     svg = Svg(900, 460, "View selection", "Candidate views around a cluster of targets, and a batch with its tour.")
-    svg.text(30, 34, "Candidates about the heaviest clusters of missing surface, then a short tour through a batch", 14, "ink", bold=True)
+    svg.text(30, 34, "Candidate views around the largest clusters of missing surface, and a short tour through a batch", 14, "ink", bold=True)
     # Left: directions.
     cx, cy, reach = 200, 330, 190
     svg.line(90, cy, 310, cy, stroke="blue", width=5)
@@ -196,7 +196,7 @@ def view_selection():
     svg.arrow([stops[0], stops[1]], "soft", 1.6, dash="6 4")
     svg.arrow([stops[1], stops[2]], "soft", 1.6, dash="6 4")
     svg.circle(*now, 7, fill="ink")
-    svg.text(now[0], now[1] + 22, "present view", 12, "ink", "middle")
+    svg.text(now[0], now[1] + 22, "current view", 12, "ink", "middle")
     for i, (x, y) in enumerate(stops):
         svg.badge(x, y, i + 1, "green" if i == 0 else "soft")
     svg.text(656, 96, "flown now; planning then repeats", 12.5, "green")
@@ -223,7 +223,7 @@ def see_update():
     svg.line(150, 218, 186, 218, stroke="green", width=1.4)
     svg.text(164, 213, "r", 12.5, "ink")
     for i, (colour, label) in enumerate((("green", "core: at least k points within r"),
-                                         ("amber", "frontier: not core, with a core neighbour and another"),
+                                         ("amber", "frontier: not core, with core and outlier neighbours"),
                                          ("soft", "outlier"))):
         svg.circle(66, 322 + 22 * i, 5, fill=colour)
         svg.text(80, 326 + 22 * i, label, 12.5)

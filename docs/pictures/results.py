@@ -1,16 +1,18 @@
 """Pictures drawn from survey results: mission file, coverage, report."""
 
-import base64
 import csv
 import json
 import math
 import pathlib
 import struct
-import subprocess
 import sys
-import tempfile
+import time
 import xml.etree.ElementTree as xml
 import zipfile
+
+from selenium import webdriver
+from selenium.webdriver.chrome.options import Options
+from selenium.webdriver.chrome.service import Service
 
 from svg import Plot, Svg
 
@@ -283,8 +285,8 @@ def coverage_classes(folder):
         svg.text(left + 180, 80, ("from the south", "from above")[view], 12.5, "soft", "middle")
     svg.text(40, 34, "Surface samples of the teapot, by what a survey measured", 14, "ink", bold=True)
     total = len(rows)
-    labels = (("green", "covered: a point within the coverage distance"), ("red", "missed, although attainable"),
-              ("amber", "visible, but not attained by the reference views either"), ("violet", "not visible from any admissible place"))
+    labels = (("green", "covered: a point within the coverage distance"), ("red", "attainable, but not covered"),
+              ("amber", "visible, but not covered by the reference views"), ("violet", "not visible from any admissible position"))
     for i, (colour, label) in enumerate(labels):
         x, y = 60 + 430 * (i % 2), 352 + 26 * (i // 2)
         svg.circle(x, y - 4, 6, fill=colour)
@@ -294,36 +296,52 @@ def coverage_classes(folder):
     return svg
 
 
-def photograph(page, width, height):
-    """Returns a JPEG screenshot of a report by headless Chromium, as base64."""
-    with tempfile.TemporaryDirectory() as folder:
-        image = pathlib.Path(folder) / "page.png"
-        subprocess.run(["chromium", "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
-                        "--disable-background-networking", "--disable-component-update", "--disable-sync",
-                        "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars",
-                        f"--user-data-dir={folder}/profile", f"--window-size={width},{height}",
-                        "--virtual-time-budget=20000", f"--screenshot={image}", page.resolve().as_uri()],
-                       check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        return base64.b64encode(image.read_bytes()).decode("ascii")
+# Parts of a report: selector of its element, and the point of its box that gets the number (0 to 1).
+REPORT_PARTS = ((".verdict", (1.06, 0.5), "Status", "complete, or why the survey stopped"),
+                (".lights", (1, 0), "Main values", "with the rule of each colour"),
+                (".stage", (0.5, 0), "3-D view", "points, views and route; drag to turn,\nwheel to zoom, click for values"),
+                (".legend", (1, 0), "Legend", "coverage, and the route's verified\nclearance by colour"),
+                (".stage + .bar", (1, 0), "Layers and directions", "colour of the points, visible layers,\nview from N, E, S, W, top"),
+                (".stage + .bar + .bar", (-0.012, 0.5), "Replay", "the survey view by view"),
+                ("main > section:nth-of-type(2) h2", (0.2, 0.5), "Uncovered surface",
+                 "largest gaps first, with reason, position\nand nearest view; click to show the gap"))
+
+
+def screenshot(page, width, height, selectors):
+    """Returns a PNG screenshot of a report in headless Chromium, as base64, and the boxes of its elements."""
+    options = Options()
+    options.binary_location = "/usr/bin/chromium"
+    for flag in ("--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+                 "--hide-scrollbars", f"--window-size={width},{height}"):
+        options.add_argument(flag)
+    browser = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
+    try:
+        browser.set_script_timeout(600)
+        browser.get(page.resolve().as_uri())
+        browser.execute_async_script("const done = arguments[0]; window.skycap.then((s) => {"
+                                     " s.panel.viewer.draw(); done(); });")
+        time.sleep(2)  # for the last requested frame
+        boxes = [browser.execute_script("""
+            const box = document.querySelector(arguments[0]).getBoundingClientRect();
+            return [box.x, box.y, box.width, box.height];""", selector) for selector in selectors]
+        image = browser.execute_cdp_cmd("Page.captureScreenshot", {
+            "format": "png", "captureBeyondViewport": True,
+            "clip": {"x": 0, "y": 0, "width": width, "height": height, "scale": 1}})
+        return image["data"], boxes
+    finally:
+        browser.quit()
 
 
 def annotated_report(folder):
     width, height = 1280, 1500
+    image, boxes = screenshot(folder / "report.html", width, height, [part[0] for part in REPORT_PARTS])
     svg = Svg(1060, 820, "The report of a survey", "Screenshot of the report with its parts numbered.")
     scale = 640 / width
-    svg.add(f'<image href="data:image/png;base64,{photograph(folder / "report.html", width, height)}" x="20" y="50" '
-            f'width="640" height="{height * scale:.0f}"/>')
+    svg.add(f'<image href="data:image/png;base64,{image}" x="20" y="50" width="640" height="{height * scale:.0f}"/>')
     svg.rect(20, 50, 640, height * scale, 4, stroke="soft", width=1)
     svg.text(20, 34, "report.html of a survey, and its parts", 15, "ink", bold=True)
-    parts = (((236, 127), "Status", "complete, or why the survey stopped"),
-             ((644, 150), "Main values", "with the rule of each colour"),
-             ((350, 262), "3-D view", "points, views and route; drag to turn,\nwheel to zoom, click for values"),
-             ((178, 500), "Legend", "coverage, and the route's verified\nclearance by colour"),
-             ((640, 623), "Layers and directions", "colour of the points, what is drawn,\nview from N, E, S, W, above"),
-             ((250, 655), "Replay", "the survey view by view"),
-             ((140, 708), "Uncovered surface", "largest pieces first, with reason, position\nand nearest view; click to go there"))
-    for number, ((x, y), title, text) in enumerate(parts, 1):
-        svg.badge(x, y, number, "blue", 12)
+    for number, ((_, point, title, text), box) in enumerate(zip(REPORT_PARTS, boxes), 1):
+        svg.badge(20 + scale * (box[0] + point[0] * box[2]), 50 + scale * (box[1] + point[1] * box[3]), number, "blue", 12)
         row = 76 + 78 * (number - 1)
         svg.badge(690, row - 5, number, "blue", 12)
         svg.text(712, row, title, 14, "ink", bold=True)

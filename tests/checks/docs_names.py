@@ -77,9 +77,14 @@ class Names:
                               check=True).stdout
 
     @functools.cache
-    def verbs(self):
-        text = subprocess.run([self.program / "skycap", "--help"], capture_output=True, text=True,
+    def program_help(self):
+        """What `skycap --help` prints: the options of all commands, and the commands."""
+        return subprocess.run([self.program / "skycap", "--help"], capture_output=True, text=True,
                               check=True).stdout
+
+    @functools.cache
+    def verbs(self):
+        text = self.program_help()
         return re.findall(r"^  ([\w-]+) ", text[text.index("Subcommands"):], re.MULTILINE)
 
     def has_path(self, path):
@@ -164,6 +169,7 @@ def code_complaints(code, names):
     elif code.startswith("--"):
         option = re.split(r"[ =]", code)[0]
         if (option not in names.script_options
+                and option not in names.program_help()
                 and not any(option in names.help(verb) for verb in names.verbs())):
             yield f"no command has the option {option}"
     elif TEST_NAME.fullmatch(code):
@@ -216,7 +222,8 @@ def skycap_complaints(words, names):
         yield f"skycap has no verb {words[0]}"
         return
     for option in (word.split("=")[0] for word in words[1:] if word.startswith("--")):
-        if not re.search(rf"(?<![\w-]){re.escape(option)}(?![\w-])", help_text):
+        if not re.search(rf"(?<![\w-]){re.escape(option)}(?![\w-])",
+                         help_text + names.program_help()):
             yield f"skycap {words[0]} has no option {option}"
     for word, value in zip(words, words[1:]):
         key = value.split("=")[0]
