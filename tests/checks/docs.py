@@ -24,13 +24,8 @@ ROOT_PAGES = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")
 
 
 def scratch_folder(folder, program):
-<<<<<<< HEAD
     """Creates the files that the commands of the pages require."""
-    for name in ("missions", "docs"):
-=======
-    """Lays out what the commands of the pages expect to find where they run."""
     for name in ("missions", "docs", "examples", "tests"):
->>>>>>> v_d1
         (folder / name).symlink_to(ROOT / name)
     (folder / "build").mkdir()
     (folder / "build" / "release").symlink_to(program)

@@ -13,16 +13,10 @@ import tempfile
 PAGE = pathlib.PurePosixPath("docs/reference/results.md")
 LIST = re.compile(r"<!-- fields: (\S+) -->\n(.*?)<!-- end of fields -->", re.DOTALL)
 SPAN = re.compile(r"`([^`]+)`")
-<<<<<<< HEAD
-# Objects that occur in two places and are listed once.
-ALIASES = {"flight.fleet.vehicles[].sorties[]": "flight.route.sorties[]"}
-# Maps whose keys are names of parts or settings. Their fields are not listed individually.
-=======
-# Objects that are listed once and occur in several places.
+# Objects that occur in several places and are listed once.
 ALIASES = {"flight.fleet.vehicles[].sorties[]": "flight.route.sorties[]",
            "flight.written[].surface": "surface", "flight.written[].targets[]": "targets[]"}
-# Maps whose keys are names of parts or settings: their fields are not listed one by one.
->>>>>>> v_d1
+# Maps whose keys are names of parts or settings. Their fields are not listed individually.
 MAPS = ("settings", "planning_time_parts_s", "per_view[].planning_time_parts_s")
 
 TEAPOT = """
