@@ -14,7 +14,7 @@ LIST = re.compile(r"<!-- fields: (\S+) -->\n(.*?)<!-- end of fields -->", re.DOT
 SPAN = re.compile(r"`([^`]+)`")
 # Objects that are listed once and occur in several places.
 ALIASES = {"flight.fleet.vehicles[].sorties[]": "flight.route.sorties[]",
-           "flight.written[].surface": "surface", "flight.written[].targets[]": "targets[]"}
+           "flight.written[].surface": "surface", "flight.written[].targets": "targets"}
 # Maps whose keys are names of parts or settings: their fields are not listed one by one.
 MAPS = ("settings", "planning_time_parts_s", "per_view[].planning_time_parts_s")
 
