@@ -1,8 +1,9 @@
 """Checks README.md, CONTRIBUTING.md, CHANGELOG.md and docs/**/*.md, or the named pages. Runs their
 checked blocks (docs_blocks.py), looks up the names in them (docs_names.py), and checks their size and
 form (docs_pages.py). Without named pages it also compares the generated reference
-(docs/generate_reference.py) and the fields of results (docs_results.py) with the program. With --write
-it updates the output of commands in the pages. Exit code 1: something is stale.
+(docs/generate_reference.py), the exit codes (docs_exit_codes.py) and the fields of results
+(docs_results.py) with the program. With --write it updates the output of commands in the pages. Exit
+code 1: something is stale.
 """
 
 import argparse
@@ -14,6 +15,7 @@ import sys
 import tempfile
 
 import docs_blocks
+import docs_exit_codes
 import docs_messages
 import docs_names
 import docs_pages
@@ -90,6 +92,8 @@ def check_tree(names, program, write):
     text = (ROOT / docs_results.PAGE).read_text(encoding="utf-8")
     wrong += [(docs_results.PAGE, complaint)
               for complaint in docs_results.complaints(text, program)]
+    wrong += [(docs_exit_codes.PAGE, complaint)
+              for complaint in docs_exit_codes.complaints(ROOT, names.verbs())]
     for name, complaint in wrong:
         print(f"{name}: {complaint}")
     generator = [sys.executable, ROOT / "docs" / "generate_reference.py", "--program", program,

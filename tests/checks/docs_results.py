@@ -15,7 +15,7 @@ LIST = re.compile(r"<!-- fields: (\S+) -->\n(.*?)<!-- end of fields -->", re.DOT
 SPAN = re.compile(r"`([^`]+)`")
 # Objects that occur in several places and are listed once.
 ALIASES = {"flight.fleet.vehicles[].sorties[]": "flight.route.sorties[]",
-           "flight.written[].surface": "surface", "flight.written[].targets[]": "targets[]"}
+           "flight.written[].surface": "surface", "flight.written[].targets": "targets"}
 # Maps whose keys are names of parts or settings. Their fields are not listed individually.
 MAPS = ("settings", "planning_time_parts_s", "per_view[].planning_time_parts_s")
 
