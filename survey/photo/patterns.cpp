@@ -52,7 +52,10 @@ class PatternMaker {
                  Vector2d(camera.width(), camera.height());
   }
 
-  PatternPhotos take() { return std::move(photos_); }
+  PatternPhotos take() {
+    if (photos_.is_too_large) photos_.views.clear();
+    return std::move(photos_);
+  }
 
   void nadir() {
     const double z = box_.max().z() + options_.view_distance;
@@ -93,8 +96,11 @@ class PatternMaker {
     const std::vector<Vector2d> hull = convex_hull(std::move(points));
     const double low = options_.min_height;
     const double high = std::max(low, box_.max().z() - 0.2 * options_.view_distance);
-    for (const double z : row_from(low, high, (1.0 - options_.side_overlap) * footprint_.y())) {
-      around(hull, z, (1.0 - options_.forward_overlap) * footprint_.x());
+    const double spacing = (1.0 - options_.side_overlap) * footprint_.y();
+    if (fits((high - low) / spacing)) {
+      for (const double z : row_from(low, high, spacing)) {
+        around(hull, z, (1.0 - options_.forward_overlap) * footprint_.x());
+      }
     }
     nadir();
   }
@@ -107,6 +113,13 @@ class PatternMaker {
     for (int i = 0; i <= steps; ++i)
       positions.push_back(low + (steps > 0 ? (high - low) / steps : 0) * i);
     return positions;
+  }
+
+  /// Returns true if the pattern may have `count` more photos. Otherwise marks it as too large.
+  bool fits(double count) {
+    const auto now = static_cast<double>(photos_.views.size() + photos_.dropped);
+    if (!(now + count <= static_cast<double>(options_.max_photos))) photos_.is_too_large = true;
+    return !photos_.is_too_large;
   }
 
   void add(const geometry::View& view) {
@@ -127,11 +140,12 @@ class PatternMaker {
     const Vector2d half = (0.5 * box_.sizes().head<2>()).array() + beside;
     const double along_half = std::abs(heading.x()) * half.x() + std::abs(heading.y()) * half.y();
     const double across_half = std::abs(across.x()) * half.x() + std::abs(across.y()) * half.y();
+    const double row_spacing = (1.0 - options_.side_overlap) * footprint_.x();
+    const double spacing = (1.0 - options_.forward_overlap) * footprint_.y() * stretch;
+    if (!fits((2.0 * across_half / row_spacing + 1.0) * (2.0 * along_half / spacing + 1.0))) return;
     bool is_forth = true;
-    for (const double b :
-         row(-across_half, across_half, (1.0 - options_.side_overlap) * footprint_.x())) {
-      std::vector<double> along =
-          row(-along_half, along_half, (1.0 - options_.forward_overlap) * footprint_.y() * stretch);
+    for (const double b : row(-across_half, across_half, row_spacing)) {
+      std::vector<double> along = row(-along_half, along_half, spacing);
       if (!is_forth) std::ranges::reverse(along);
       is_forth = !is_forth;
       for (const double a : along) {
@@ -167,6 +181,7 @@ class PatternMaker {
       turns[i] = std::atan2(before.x() * after.y() - before.y() * after.x(), before.dot(after));
       length += d * turns[i] + (hull[(i + 1) % count] - hull[i]).norm();
     }
+    if (!fits(length / spacing)) return;
     const auto photos = static_cast<int>(std::ceil(length / spacing - 1e-9));
     const double step = length / photos;
     double next = 0.0, passed = 0.0;

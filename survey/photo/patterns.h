@@ -27,16 +27,18 @@ const char* to_string(Pattern pattern);
 std::optional<Pattern> pattern_named(std::string_view name);
 
 struct PatternOptions {
-  double view_distance = 10.0;   ///< View distance d [m].
-  double forward_overlap = 0.8;  ///< Overlap of consecutive photos, in [0, 0.95].
-  double side_overlap = 0.7;     ///< Overlap of neighbouring rows, in [0, 0.95].
-  double ground = 0.0;           ///< z at the base of the target [m].
-  double min_height = 0.0;       ///< z of the lowest facade row and orbit [m].
+  double view_distance = 10.0;     ///< View distance d [m].
+  double forward_overlap = 0.8;    ///< Overlap of consecutive photos, in [0, 0.95].
+  double side_overlap = 0.7;       ///< Overlap of neighbouring rows, in [0, 0.95].
+  double ground = 0.0;             ///< z at the base of the target [m].
+  double min_height = 0.0;         ///< z of the lowest facade row and orbit [m].
+  std::size_t max_photos = 20000;  ///< Limit of the number of photos, including dropped ones.
 };
 
 struct PatternPhotos {
   std::vector<geometry::View> views;  ///< Photos in the order of the pattern.
   std::size_t dropped = 0;            ///< Number of photos excluded by the space.
+  bool is_too_large = false;  ///< True if the pattern exceeds max_photos. It has no photos then.
 };
 
 /// Returns the photos of a pattern around a target. Overlaps refer to the footprint at the view

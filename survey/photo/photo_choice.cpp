@@ -1,6 +1,8 @@
 #include "survey/photo/photo_choice.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -12,6 +14,8 @@
 
 namespace skycap::survey::photo {
 namespace {
+
+constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
 /// Observation by a selected photo, with its number of stereo partners.
 struct Partnered {
@@ -26,32 +30,180 @@ struct SampleState {
   float h = 0.0F;
 };
 
-constexpr float weight_of_h = 0.3F;
+/// Rule by which photos increase the value of samples.
+struct GainRule {
+  StereoPairs pairs;
+  bool counts_h = true;  ///< True if h is part of the value.
 
-/// Samples processed in one task of a thread.
-constexpr std::size_t samples_in_block = 32;
+  bool has_enough(const SampleState& state) const {
+    return !state.observations.empty() && state.partners >= pairs.rule().min_partners;
+  }
+  /// Returns true if no photo increases the sample's value.
+  bool is_full(const SampleState& state) const {
+    return has_enough(state) && (!counts_h || state.h >= 1.0F);
+  }
+};
+
+/// Gains of candidates at samples, kept up to date while photos are added. Gains are integers, so
+/// that their sums do not depend on the order of the additions.
+class GainTable {
+ public:
+  static constexpr std::int64_t unit = 1 << 16;  ///< Gain of a sample's first photo.
+
+  explicit GainTable(const PhotoChoiceProblem& problem)
+      : problem_(problem),
+        entry_of_sample_(problem.samples->size(), none),
+        slot_of_candidate_(problem.candidates.size(), none) {}
+
+  /// Computes the gains of `candidates` at `samples`, which have these weights and are not full.
+  void start(std::vector<std::uint32_t> samples, std::vector<std::int64_t> weights,
+             std::vector<std::uint32_t> candidates, const std::vector<SampleState>& states,
+             const GainRule& rule) {
+    for (const std::uint32_t s : samples_) entry_of_sample_[s] = none;
+    for (const std::uint32_t c : candidates_) slot_of_candidate_[c] = none;
+    samples_ = std::move(samples);
+    weights_ = std::move(weights);
+    candidates_ = std::move(candidates);
+    for (std::uint32_t i = 0; i < samples_.size(); ++i) entry_of_sample_[samples_[i]] = i;
+    for (std::uint32_t i = 0; i < candidates_.size(); ++i) slot_of_candidate_[candidates_[i]] = i;
+    make_entries(states, rule);
+  }
+
+  const std::vector<std::uint32_t>& candidates() const { return candidates_; }
+  /// Returns the weighted gains of the candidates, in their order.
+  const std::vector<std::int64_t>& totals() const { return totals_; }
+
+  /// Updates the gains at a sample after an observation was appended to its state.
+  void update(std::uint32_t sample, const SampleState& state, bool was_full, const GainRule& rule) {
+    const std::uint32_t i = entry_of_sample_[sample];
+    if (i == none || was_full) return;
+    const std::int64_t weight = weights_[i];
+    const Moment now(state, rule);
+    for (std::size_t e = begin_[i]; e < begin_[i + 1]; ++e) {
+      Entry& entry = entries_[e];
+      std::int64_t& total = totals_[entry.seen.photo];
+      total -= weight * entry.gain;
+      append(entry, state.observations.back().seen, state.observations.size() - 1, rule);
+      entry.gain = gain(entry, now, rule);
+      total += weight * entry.gain;
+    }
+  }
+
+ private:
+  /// Observation by a candidate. `seen.photo` is the candidate's index in the table.
+  struct Entry {
+    Observation seen;
+    std::uint32_t partners = 0;  ///< Bit i: observation i of the sample is a stereo partner.
+    float h = 0.0F;              ///< Sum of the terms of h with the sample's observations.
+    std::int32_t gain = 0;
+  };
+  /// Number of bits of Entry::partners. Samples with more observations gain nothing.
+  static constexpr std::size_t max_observations = 32;
+
+  /// Properties of a sample's state, on which its gains depend.
+  struct Moment {
+    Moment(const SampleState& state, const GainRule& rule)
+        : count(state.observations.size()),
+          partners(state.partners),
+          h(state.h),
+          is_full(rule.is_full(state) || count > max_observations) {
+      if (is_full) return;
+      for (std::size_t i = 0; i < count; ++i) {
+        if (state.observations[i].partners == partners) with_most |= 1U << i;
+      }
+    }
+    std::size_t count;
+    int partners;
+    float h;
+    bool is_full;
+    std::uint32_t with_most = 0;  ///< Observations with the largest number of partners.
+  };
+
+  static void append(Entry& entry, const Observation& added, std::size_t index,
+                     const GainRule& rule) {
+    if (index < max_observations && rule.pairs.are_partners(entry.seen, added)) {
+      entry.partners |= 1U << index;
+    }
+    if (rule.counts_h) entry.h += rule.pairs.reconstructability(entry.seen, added);
+  }
+
+  /// Returns the increase of a sample's value by a candidate.
+  static std::int32_t gain(const Entry& entry, const Moment& now, const GainRule& rule) {
+    if (now.is_full) return 0;
+    if (now.count == 0) return static_cast<std::int32_t>(unit);
+    const int enough = rule.pairs.rule().min_partners;
+    const int max = std::max(std::popcount(entry.partners),
+                             now.partners + ((entry.partners & now.with_most) != 0 ? 1 : 0));
+    const int more = std::min(std::max(max, now.partners), enough) - std::min(now.partners, enough);
+    std::int64_t value = more * unit;
+    if (rule.counts_h && now.h < 1.0F) {
+      constexpr float weight_of_h = 0.3F;
+      const float rise = std::min(1.0F, now.h + entry.h) - now.h;
+      value += std::lround(weight_of_h * rise * static_cast<float>(unit));
+    }
+    return static_cast<std::int32_t>(value);
+  }
+
+  void make_entries(const std::vector<SampleState>& states, const GainRule& rule) {
+    begin_.assign(samples_.size() + 1, 0);
+    geometry::parallel_for_each(samples_.size(), problem_.threads, [&](std::size_t i) {
+      begin_[i + 1] = static_cast<std::size_t>(
+          std::ranges::count_if(problem_.observers[samples_[i]],
+                                [&](std::uint32_t c) { return slot_of_candidate_[c] != none; }));
+    });
+    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+    entries_.resize(begin_.back());
+    constexpr std::size_t block = 128;
+    const std::size_t blocks = (samples_.size() + block - 1) / block;
+    geometry::parallel_for(blocks, problem_.threads, [&](std::size_t number) {
+      const std::size_t end = std::min(samples_.size(), (number + 1) * block);
+      for (std::size_t i = number * block; i < end; ++i) {
+        make_entries_of(i, states[samples_[i]], rule);
+      }
+    });
+    totals_.assign(candidates_.size(), 0);
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      for (std::size_t e = begin_[i]; e < begin_[i + 1]; ++e) {
+        totals_[entries_[e].seen.photo] += weights_[i] * entries_[e].gain;
+      }
+    }
+  }
+
+  void make_entries_of(std::size_t i, const SampleState& state, const GainRule& rule) {
+    const Moment now(state, rule);
+    Entry* entry = &entries_[begin_[i]];
+    for (const std::uint32_t c : problem_.observers[samples_[i]]) {
+      if (slot_of_candidate_[c] == none) continue;
+      *entry = {make_observation(problem_.candidates[c].position, slot_of_candidate_[c],
+                                 *problem_.samples, samples_[i])};
+      for (std::size_t o = 0; o < state.observations.size(); ++o) {
+        append(*entry, state.observations[o].seen, o, rule);
+      }
+      entry->gain = gain(*entry, now, rule);
+      ++entry;
+    }
+  }
+
+  const PhotoChoiceProblem& problem_;
+  std::vector<std::uint32_t> samples_, candidates_;
+  std::vector<std::int64_t> weights_;
+  std::vector<std::uint32_t> entry_of_sample_;    ///< Index in samples_, or none.
+  std::vector<std::uint32_t> slot_of_candidate_;  ///< Index in candidates_, or none.
+  std::vector<std::size_t> begin_;                ///< Entries of each sample.
+  std::vector<Entry> entries_;
+  std::vector<std::int64_t> totals_;
+};
 
 }  // namespace
 
 struct PhotoChoice::Impl {
   explicit Impl(const PhotoChoiceProblem& given)
       : problem(given),
-        pairs(given.rule),
+        rule{StereoPairs(given.rule)},
         samples(given.samples->size()),
-        gains(given.observers.items.size(), 0.0F),
-        is_current(given.samples->size(), 0),
-        seen(given.observers.items.size()),
-        is_open(given.candidates.size(), 1),
         blocked(given.candidates.size(), 0),
-        is_chosen(given.candidates.size(), 0),
         near(given.candidates.size()) {
     find_near();
-    geometry::parallel_for_each(samples.size(), problem.threads, [&](std::size_t s) {
-      std::uint32_t entry = problem.observers.begin[s];
-      for (const std::uint32_t c : problem.observers[s]) {
-        seen[entry++] = make_observation(problem.candidates[c].position, c, *problem.samples, s);
-      }
-    });
   }
 
   void find_near() {
@@ -64,34 +216,8 @@ struct PhotoChoice::Impl {
     });
   }
 
-  /// Returns true if no photo increases the sample's value.
-  bool is_full(const SampleState& state) const {
-    return !state.observations.empty() && state.partners >= problem.rule.min_partners &&
-           (!counts_h || state.h >= 1.0F);
-  }
-
-  /// Returns the increase of a sample's value by an observation.
-  float gain(const Observation& added, const SampleState& state) const {
-    const int enough = problem.rule.min_partners;
-    if (state.observations.empty()) return 1.0F;
-    int own = 0, max = state.partners;
-    for (const Partnered& other : state.observations) {
-      if (!pairs.are_partners(added, other.seen)) continue;
-      ++own;
-      max = std::max(max, other.partners + 1);
-    }
-    const int more = std::min(std::max(max, own), enough) - std::min(state.partners, enough);
-    if (!counts_h || state.h >= 1.0F) return static_cast<float>(more);
-    float h = 0.0F;
-    for (const Partnered& other : state.observations) {
-      h += pairs.reconstructability(added, other.seen);
-    }
-    return static_cast<float>(more) + weight_of_h * (std::min(1.0F, state.h + h) - state.h);
-  }
-
   void count_satisfied(const SampleState& state, int sign) {
-    const bool is = !state.observations.empty() && state.partners >= problem.rule.min_partners;
-    if (is) satisfied += static_cast<std::size_t>(sign);
+    if (rule.has_enough(state)) satisfied += static_cast<std::size_t>(sign);
   }
 
   /// Returns h of a sample, computed from all its observations.
@@ -99,7 +225,7 @@ struct PhotoChoice::Impl {
     float h = 0.0F;
     for (std::size_t i = 0; i < state.observations.size(); ++i) {
       for (std::size_t j = 0; j < i; ++j) {
-        h += pairs.reconstructability(state.observations[i].seen, state.observations[j].seen);
+        h += rule.pairs.reconstructability(state.observations[i].seen, state.observations[j].seen);
       }
     }
     return h;
@@ -111,15 +237,14 @@ struct PhotoChoice::Impl {
     Partnered added{make_observation(problem.candidates[candidate].position, candidate,
                                      *problem.samples, sample)};
     for (Partnered& other : state.observations) {
-      if (counts_h) state.h += pairs.reconstructability(added.seen, other.seen);
-      if (!pairs.are_partners(added.seen, other.seen)) continue;
+      if (rule.counts_h) state.h += rule.pairs.reconstructability(added.seen, other.seen);
+      if (!rule.pairs.are_partners(added.seen, other.seen)) continue;
       ++added.partners;
       state.partners = std::max(state.partners, ++other.partners);
     }
     state.partners = std::max(state.partners, added.partners);
     state.observations.push_back(added);
     count_satisfied(state, 1);
-    is_current[sample] = 0;
   }
 
   void remove_from_sample(std::uint32_t candidate, std::size_t sample) {
@@ -131,22 +256,25 @@ struct PhotoChoice::Impl {
     state.observations.erase(at);
     state.partners = 0;
     for (Partnered& other : state.observations) {
-      if (pairs.are_partners(removed, other.seen)) --other.partners;
+      if (rule.pairs.are_partners(removed, other.seen)) --other.partners;
       state.partners = std::max(state.partners, other.partners);
     }
-    if (counts_h) state.h = sum_of_pairs(state);
+    if (rule.counts_h) state.h = sum_of_pairs(state);
     count_satisfied(state, 1);
-    is_current[sample] = 0;
   }
 
   void block(std::uint32_t candidate, int sign) {
     for (const std::uint32_t other : near[candidate]) blocked[other] += sign;
   }
 
-  void add(std::uint32_t candidate) {
-    for (const std::uint32_t sample : problem.observed[candidate]) add_to_sample(candidate, sample);
+  /// Adds a photo and updates the gains, if a table is given.
+  void add(std::uint32_t candidate, GainTable* gains = nullptr) {
+    for (const std::uint32_t sample : problem.observed[candidate]) {
+      const bool was_full = rule.is_full(samples[sample]);
+      add_to_sample(candidate, sample);
+      if (gains != nullptr) gains->update(sample, samples[sample], was_full, rule);
+    }
     block(candidate, 1);
-    is_chosen[candidate] = 1;
     chosen.push_back(candidate);
   }
 
@@ -155,97 +283,25 @@ struct PhotoChoice::Impl {
       remove_from_sample(candidate, sample);
     }
     block(candidate, -1);
-    is_chosen[candidate] = 0;
     std::erase(chosen, candidate);
   }
 
-  /// Updates the gains of these samples.
-  void update_gains(std::span<const std::uint32_t> which) {
-    const std::size_t blocks = (which.size() + samples_in_block - 1) / samples_in_block;
-    const auto update = [&](std::size_t number) {
-      const std::size_t end = std::min(which.size(), (number + 1) * samples_in_block);
-      for (std::size_t i = number * samples_in_block; i < end; ++i) {
-        const std::uint32_t sample = which[i];
-        if (is_current[sample] != 0) continue;
-        const std::uint32_t first = problem.observers.begin[sample];
-        const auto candidates = problem.observers[sample];
-        const bool full = is_full(samples[sample]);
-        for (std::size_t k = 0; k < candidates.size(); ++k) {
-          const std::uint32_t c = candidates[k];
-          if (is_open[c] == 0) continue;
-          gains[first + k] =
-              full || is_chosen[c] != 0 ? 0.0F : gain(seen[first + k], samples[sample]);
-        }
-        is_current[sample] = 1;
-      }
-    };
-    constexpr std::size_t worth_threads = 4;
-    if (blocks < worth_threads) {
-      for (std::size_t number = 0; number < blocks; ++number) update(number);
-    } else {
-      geometry::parallel_for(blocks, problem.threads, update);
-    }
-  }
-
-  /// Adds a sample's weighted gains to the totals of its candidates, or subtracts them.
-  void sum_gains(std::uint32_t sample, double weight) {
-    const std::uint32_t first = problem.observers.begin[sample];
-    const auto candidates = problem.observers[sample];
-    for (std::size_t k = 0; k < candidates.size(); ++k) {
-      const std::uint32_t c = candidates[k];
-      if (is_open[c] != 0) totals[c] += weight * gains[first + k];
-    }
-  }
-
-  /// Restricts the candidates to the `kept` ones with the largest total.
-  void keep_best(std::span<const float> factors, std::size_t kept) {
-    if (kept >= totals.size()) return;
-    std::vector<std::uint32_t> order(totals.size());
-    std::iota(order.begin(), order.end(), 0U);
-    const auto value = [&](std::uint32_t c) {
-      return blocked[c] == 0 ? totals[c] * factors[c] : -1.0;
-    };
-    const auto is_better = [&](std::uint32_t a, std::uint32_t b) {
-      return value(a) != value(b) ? value(a) > value(b) : a < b;
-    };
-    const auto end = order.begin() + static_cast<std::ptrdiff_t>(kept);
-    std::ranges::nth_element(order, end, is_better);
-    is_open.assign(totals.size(), 0);
-    for (auto c = order.begin(); c != end; ++c) is_open[*c] = 1;
-  }
-
-  /// Adds photos with the largest totals, multiplied by the factors of their candidates, while
-  /// `may_go_on()` returns true. Samples are weighted. Only the `kept` candidates with the largest
-  /// initial total are considered.
+  /// Adds photos of the table with the largest gains, multiplied by the factors of the table's
+  /// candidates, while `may_go_on()` returns true and the gains exceed `min_gain`.
   template <typename GoesOn>
-  void fill(std::span<const float> weights, std::span<const float> factors, std::size_t kept,
-            double min_gain, GoesOn may_go_on, const std::function<void()>& added) {
-    std::vector<std::uint32_t> all;
-    for (std::uint32_t s = 0; s < samples.size(); ++s) {
-      if (weights[s] > 0.0F && !is_full(samples[s])) all.push_back(s);
-    }
-    update_gains(all);
-    totals.assign(problem.candidates.size(), 0.0);
-    for (const std::uint32_t s : all) sum_gains(s, weights[s]);
-    keep_best(factors, kept);
-    std::vector<std::uint32_t> changed;
+  void fill(GainTable& gains, std::span<const float> factors, double min_gain, GoesOn may_go_on,
+            const std::function<void()>& added) {
     while (may_go_on()) {
       double best = min_gain;
-      std::uint32_t choice = std::numeric_limits<std::uint32_t>::max();
-      for (std::uint32_t c = 0; c < totals.size(); ++c) {
-        const double value = factors.empty() ? totals[c] : totals[c] * factors[c];
-        if (blocked[c] == 0 && is_open[c] != 0 && value > best) best = value, choice = c;
+      std::uint32_t choice = none;
+      for (std::uint32_t i = 0; i < gains.totals().size(); ++i) {
+        const std::uint32_t c = gains.candidates()[i];
+        const auto total = static_cast<double>(gains.totals()[i]);
+        const double value = factors.empty() ? total : total * factors[i];
+        if (blocked[c] == 0 && value > best) best = value, choice = c;
       }
-      if (choice == std::numeric_limits<std::uint32_t>::max()) return;
-      changed.clear();
-      for (const std::uint32_t s : problem.observed[choice]) {
-        if (weights[s] <= 0.0F || is_full(samples[s])) continue;
-        changed.push_back(s);
-        sum_gains(s, -static_cast<double>(weights[s]));
-      }
-      add(choice);
-      update_gains(changed);
-      for (const std::uint32_t s : changed) sum_gains(s, weights[s]);
+      if (choice == none) return;
+      add(choice, &gains);
       if (added) added();
     }
   }
@@ -269,63 +325,103 @@ struct PhotoChoice::Impl {
     return result;
   }
 
-  void repair_once(geometry::RandomNumbers& random, std::size_t enough);
+  /// Work space of the search.
+  struct Search {
+    explicit Search(const PhotoChoiceProblem& problem)
+        : gains(problem), last_round(problem.samples->size(), none) {}
+    GainTable gains;
+    std::vector<std::uint32_t> last_round;  ///< Last round that changed each sample.
+    std::uint32_t round = 0;
+    std::size_t enough = 0;  ///< Number of satisfied samples to be kept.
+  };
+  /// Samples of removed photos that are not satisfied.
+  struct Lack {
+    std::vector<std::uint32_t> samples;
+    std::vector<std::int64_t> weights;
+  };
+
+  Lack remove_all(std::span<const std::uint32_t> photos, Search& search);
+  std::vector<std::uint32_t> promising(const Lack& lack) const;
+  void repair_once(geometry::RandomNumbers& random, Search& search);
 
   const PhotoChoiceProblem& problem;
-  StereoPairs pairs;
+  GainRule rule;
   std::vector<SampleState> samples;
-  std::vector<float> gains;       ///< Gain of each entry of problem.observers.
-  std::vector<char> is_current;   ///< 1 if a sample's gains are current.
-  std::vector<Observation> seen;  ///< Observation of each entry of problem.observers.
-  std::vector<char> is_open;      ///< Candidates under consideration.
-  bool counts_h = true;           ///< True while h is part of the value.
-  std::vector<double> totals;     ///< Weighted gain of each candidate.
-  std::vector<int> blocked;       ///< Number of selected photos at the same position.
-  std::vector<char> is_chosen;
+  std::vector<int> blocked;  ///< Number of selected photos at the same position.
   std::vector<std::vector<std::uint32_t>> near;  ///< Candidates at the same position.
   std::vector<std::uint32_t> chosen;
   std::size_t satisfied = 0;
 };
 
-void PhotoChoice::Impl::repair_once(geometry::RandomNumbers& random, std::size_t enough) {
-  constexpr double min_share = 0.06, max_share = 0.18, weight_of_others = 0.15, noise = 0.15;
-  constexpr std::size_t kept_candidates = 300;
-  const std::vector<std::uint32_t> before = chosen;
-  const std::uint32_t centre = chosen[random() % chosen.size()];
+PhotoChoice::Impl::Lack PhotoChoice::Impl::remove_all(std::span<const std::uint32_t> photos,
+                                                      Search& search) {
+  // Other samples are ignored: they change little, but would increase the computing time.
+  std::vector<std::uint32_t> touched;
+  std::vector<char> was_satisfied;
+  for (const std::uint32_t c : photos) {
+    for (const std::uint32_t s : problem.observed[c]) {
+      if (search.last_round[s] == search.round) continue;
+      search.last_round[s] = search.round;
+      touched.push_back(s);
+      was_satisfied.push_back(rule.has_enough(samples[s]) ? 1 : 0);
+    }
+  }
+  for (const std::uint32_t c : photos) remove(c);
+  constexpr std::int64_t weight_of_lost = 20, weight_of_others = 3;
+  Lack lack;
+  for (std::size_t i = 0; i < touched.size(); ++i) {
+    if (rule.has_enough(samples[touched[i]])) continue;
+    lack.samples.push_back(touched[i]);
+    lack.weights.push_back(was_satisfied[i] != 0 ? weight_of_lost : weight_of_others);
+  }
+  return lack;
+}
+
+/// Returns the candidates that observe the largest weight of these samples, in ascending order.
+std::vector<std::uint32_t> PhotoChoice::Impl::promising(const Lack& lack) const {
+  constexpr std::size_t max_candidates = 400;
+  std::vector<std::int64_t> weight(problem.candidates.size(), 0);
+  for (std::size_t i = 0; i < lack.samples.size(); ++i) {
+    for (const std::uint32_t c : problem.observers[lack.samples[i]]) weight[c] += lack.weights[i];
+  }
+  std::vector<std::uint32_t> result;
+  for (std::uint32_t c = 0; c < weight.size(); ++c) {
+    if (weight[c] > 0 && blocked[c] == 0) result.push_back(c);
+  }
+  if (result.size() > max_candidates) {
+    const auto end = result.begin() + static_cast<std::ptrdiff_t>(max_candidates);
+    std::ranges::nth_element(result, end, [&](std::uint32_t a, std::uint32_t b) {
+      return weight[a] != weight[b] ? weight[a] > weight[b] : a < b;
+    });
+    result.erase(end, result.end());
+    std::ranges::sort(result);
+  }
+  return result;
+}
+
+void PhotoChoice::Impl::repair_once(geometry::RandomNumbers& random, Search& search) {
+  constexpr double min_share = 0.06, max_share = 0.18, noise = 0.15;
+  constexpr std::size_t max_neighbours = 200;  // Larger clusters of large plans do not help.
+  const std::size_t before = chosen.size();
+  const std::uint32_t centre = chosen[random() % before];
   const double share = random.between(min_share, max_share);
   const auto count = static_cast<std::size_t>(
-      std::max(1.0, std::round(share * static_cast<double>(chosen.size()))));
-  const std::uint64_t noise_seed = random();
+      std::max(1.0, std::round(share * static_cast<double>(std::min(before, max_neighbours)))));
+  geometry::ShortRandomNumbers draws(random());
 
+  ++search.round;
   const std::vector<std::uint32_t> removed = neighbourhood(centre, count);
-  // Samples that no removed photo observes change little, but would increase the computing time.
-  std::vector<float> weights(samples.size(), 0.0F);
-  std::vector<std::uint32_t> touched;
-  for (const std::uint32_t c : removed) {
-    for (const std::uint32_t s : problem.observed[c]) touched.push_back(s);
-  }
-  std::ranges::sort(touched);
-  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-  std::vector<char> was_satisfied(touched.size());
-  const auto has_enough = [&](std::uint32_t s) {
-    return !samples[s].observations.empty() && samples[s].partners >= problem.rule.min_partners;
-  };
-  for (std::size_t i = 0; i < touched.size(); ++i) was_satisfied[i] = has_enough(touched[i]);
-  for (const std::uint32_t c : removed) remove(c);
-  for (std::size_t i = 0; i < touched.size(); ++i) {
-    const bool is_lost = was_satisfied[i] != 0 && !has_enough(touched[i]);
-    weights[touched[i]] = is_lost ? 1.0F : static_cast<float>(weight_of_others);
-  }
-  geometry::RandomNumbers draws(noise_seed);
-  std::vector<float> factors(problem.candidates.size());
+  Lack lack = remove_all(removed, search);
+  std::vector<std::uint32_t> candidates = promising(lack);
+  std::vector<float> factors(candidates.size());
   for (float& factor : factors) factor = static_cast<float>(1.0 + noise * draws.uniform());
-  std::ranges::fill(is_open, 1);
-  is_current.assign(samples.size(), 0);  // Gains exist only for the candidates considered before.
-  fill(weights, factors, kept_candidates, 1e-6,
-       [&] { return satisfied < enough && chosen.size() < before.size(); }, {});
-  if (satisfied >= enough && chosen.size() <= before.size()) return;
-  std::vector<std::uint32_t> refilled(
-      chosen.begin() + static_cast<std::ptrdiff_t>(before.size() - removed.size()), chosen.end());
+  search.gains.start(std::move(lack.samples), std::move(lack.weights), std::move(candidates),
+                     samples, rule);
+  fill(search.gains, factors, 0.0,
+       [&] { return satisfied < search.enough && chosen.size() < before; }, {});
+  if (satisfied >= search.enough) return;
+  const std::vector<std::uint32_t> refilled(
+      chosen.begin() + static_cast<std::ptrdiff_t>(before - removed.size()), chosen.end());
   for (const std::uint32_t c : refilled) remove(c);
   for (const std::uint32_t c : removed) add(c);
 }
@@ -388,8 +484,7 @@ const std::vector<std::uint32_t>& PhotoChoice::chosen() const { return impl_->ch
 std::size_t PhotoChoice::satisfied() const { return impl_->satisfied; }
 
 bool PhotoChoice::is_satisfied(std::size_t sample) const {
-  const SampleState& state = impl_->samples[sample];
-  return !state.observations.empty() && state.partners >= impl_->problem.rule.min_partners;
+  return impl_->rule.has_enough(impl_->samples[sample]);
 }
 
 int PhotoChoice::partners(std::size_t sample) const {
@@ -403,10 +498,17 @@ double PhotoChoice::reconstructability(std::size_t sample) const {
 }
 
 void PhotoChoice::greedy(const Limits& limits, const std::function<void()>& added) {
-  const std::vector<float> weights(impl_->samples.size(), 1.0F);
-  const std::size_t problem_size = impl_->problem.candidates.size();
+  std::vector<std::uint32_t> samples, candidates(impl_->problem.candidates.size());
+  for (std::uint32_t s = 0; s < impl_->samples.size(); ++s) {
+    if (!impl_->rule.is_full(impl_->samples[s])) samples.push_back(s);
+  }
+  std::iota(candidates.begin(), candidates.end(), 0U);
+  std::vector<std::int64_t> weights(samples.size(), 1);
+  GainTable gains(impl_->problem);
+  gains.start(std::move(samples), std::move(weights), std::move(candidates), impl_->samples,
+              impl_->rule);
   impl_->fill(
-      weights, {}, problem_size, limits.min_gain,
+      gains, {}, limits.min_gain * static_cast<double>(GainTable::unit),
       [&] {
         return impl_->chosen.size() < limits.max_photos &&
                impl_->satisfied < limits.enough_satisfied;
@@ -416,64 +518,18 @@ void PhotoChoice::greedy(const Limits& limits, const std::function<void()>& adde
 
 void PhotoChoice::destroy_and_repair(const Repair& options, const std::stop_token& stop) {
   geometry::RandomNumbers random(options.seed, 2);
-  impl_->counts_h = false;
-  const std::size_t enough = impl_->satisfied;
+  if (impl_->satisfied == 0) return;  // Any photo could be removed.
+  Impl::Search search(impl_->problem);
+  search.enough = impl_->satisfied;
+  impl_->rule.counts_h = false;
   for (std::size_t round = 0; round < options.rounds && !stop.stop_requested(); ++round) {
     if (impl_->chosen.empty()) break;
-    impl_->repair_once(random, enough);
+    impl_->repair_once(random, search);
   }
-  impl_->counts_h = true;
+  impl_->rule.counts_h = true;
   geometry::parallel_for_each(impl_->samples.size(), impl_->problem.threads, [&](std::size_t s) {
     impl_->samples[s].h = impl_->sum_of_pairs(impl_->samples[s]);
   });
-  std::ranges::fill(impl_->is_open, 1);
-  std::ranges::fill(impl_->is_current, 0);
-}
-
-CoverBound cover_bound(const PhotoChoiceProblem& problem, std::span<const std::uint32_t> samples,
-                       int observations, std::size_t upper_bound) {
-  constexpr int rounds = 2000, patience = 40;
-  const std::size_t candidates = problem.candidates.size();
-  double max = 0.0;
-  for (const std::uint32_t s : samples) {
-    max = std::max(max, static_cast<double>(problem.observers[s].size()));
-  }
-  if (max == 0.0) return {};
-  std::vector<double> prices(samples.size(), 1.0 / max), reduced(candidates), slack(samples.size());
-  double best = 0.0, step = 1.0;
-  int idle = 0;
-  for (int round = 0; round < rounds; ++round) {
-    reduced.assign(candidates, 1.0);
-    double bound = 0.0;
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      bound += observations * prices[i];
-      if (prices[i] == 0.0) continue;
-      for (const std::uint32_t c : problem.observers[samples[i]]) reduced[c] -= prices[i];
-    }
-    for (const double cost : reduced) bound += std::min(0.0, cost);
-    if (bound > best + 1e-5 * best) {
-      best = bound;
-      idle = 0;
-    } else {
-      best = std::max(best, bound);
-      if (++idle >= patience) step *= 0.5, idle = 0;
-    }
-    double squared = 0.0;
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      int taken = 0;
-      for (const std::uint32_t c : problem.observers[samples[i]]) taken += reduced[c] < 0.0 ? 1 : 0;
-      slack[i] = observations - taken;
-      if (prices[i] == 0.0 && slack[i] < 0.0) slack[i] = 0.0;
-      squared += slack[i] * slack[i];
-    }
-    if (squared == 0.0) break;
-    const double length = step * (static_cast<double>(upper_bound) - bound) / squared;
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      prices[i] = std::max(0.0, prices[i] + length * slack[i]);
-    }
-  }
-  constexpr double rounding = 1e-6;
-  return {best, static_cast<std::size_t>(std::ceil(best - rounding))};
 }
 
 }  // namespace skycap::survey::photo

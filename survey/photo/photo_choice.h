@@ -78,22 +78,13 @@ class PhotoChoice {
   /// Repeatedly removes a cluster of 6 to 18% of the photos around a photo, by distance + 0.5 d
   /// times the difference of directions. Then adds photos greedily for the samples that are no
   /// longer satisfied. Keeps the result if it satisfies at least as many samples as at the start of
-  /// the search, with at most as many photos. Ends early after a stop request.
+  /// the search, with at most as many photos. Does nothing if no sample is satisfied. Ends early
+  /// after a stop request.
   void destroy_and_repair(const Repair& options, const std::stop_token& stop = {});
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
-
-/// Lower bound of the number of photos that satisfy these samples, because each sample requires K +
-/// 1 observations. Lagrangian bound of the covering problem by subgradient ascent (Held, Wolfe and
-/// Crowder, "Validation of subgradient optimization", 1974). Angles are ignored.
-struct CoverBound {
-  double relaxed = 0.0;    ///< Bound of the linear relaxation.
-  std::size_t photos = 0;  ///< Bound as an integer number of photos.
-};
-CoverBound cover_bound(const PhotoChoiceProblem& problem, std::span<const std::uint32_t> samples,
-                       int observations, std::size_t upper_bound);
 
 }  // namespace skycap::survey::photo

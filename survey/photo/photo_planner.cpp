@@ -168,6 +168,11 @@ class Planner {
             site_.min_height};
   }
 
+  static std::string too_large(Pattern pattern) {
+    return std::string("the pattern ") + to_string(pattern) + " has more than " +
+           std::to_string(PatternOptions().max_photos) + " photos";
+  }
+
   PatternPhotos make_photos(Pattern pattern) const {
     return pattern_photos(pattern, camera_, site_.target, pattern_options(), site_.space);
   }
@@ -176,7 +181,12 @@ class Planner {
   PhotoChoiceProblem make_problem(const Observer& observer) {
     std::vector<geometry::View> candidates;
     if (options_.flown_pattern) {
-      candidates = make_photos(*options_.flown_pattern).views;
+      PatternPhotos photos = make_photos(*options_.flown_pattern);
+      if (photos.is_too_large) {
+        throw Error(ErrorKind::bad_config,
+                    too_large(*options_.flown_pattern) + "; raise photo.gsd or divide the target");
+      }
+      candidates = std::move(photos.views);
     } else {
       candidates = candidate_photos(observer, site_.space,
                                     {candidates_for(chosen_on_.size()), run_.seed, run_.threads});
@@ -258,7 +268,10 @@ class Planner {
                   [&] { report("choosing photos: " + std::to_string(choice.chosen().size())); });
     result_.greedy_photos = choice.chosen().size();
     report("removing photos: " + std::to_string(choice.chosen().size()));
-    choice.destroy_and_repair({options_.repair_rounds, run_.seed}, run_.stop);
+    // Each round changes a part of a large plan.
+    constexpr std::size_t photos_per_share = 100;
+    const std::size_t shares = std::max<std::size_t>(1, result_.greedy_photos / photos_per_share);
+    choice.destroy_and_repair({shares * options_.repair_rounds, run_.seed}, run_.stop);
     result_.repaired_photos = choice.chosen().size();
   }
 
@@ -270,9 +283,8 @@ class Planner {
   void set_bound(const PhotoChoiceProblem& problem, const PhotoChoice& choice) {
     if (options_.flown_pattern) return;
     report("computing the lower bound");
-    constexpr std::size_t max_samples = 3000;  // Any subset gives a valid bound.
     std::vector<std::uint32_t> satisfied;
-    for (std::uint32_t s = 0; s < chosen_on_.size() && satisfied.size() < max_samples; ++s) {
+    for (std::uint32_t s = 0; s < chosen_on_.size(); ++s) {
       if (choice.is_satisfied(s)) satisfied.push_back(s);
     }
     result_.bound = cover_bound(problem, satisfied, rule_.min_partners + 1, choice.chosen().size());
@@ -450,6 +462,10 @@ class Planner {
     for (const Pattern pattern : options_.patterns) {
       report(std::string("evaluating the pattern ") + to_string(pattern));
       PatternPhotos photos = make_photos(pattern);
+      if (photos.is_too_large) {
+        result_.warnings.push_back(too_large(pattern) + " and is not compared");
+        continue;
+      }
       PatternResult result;
       result.pattern = pattern;
       result.dropped = photos.dropped;
@@ -502,6 +518,12 @@ void PhotoPlanOptions::validate() const {
 PhotoPlanResult plan_photos(const PhotoPlanOptions& options, const PhotoSite& site,
                             const PhotoPlanRun& run) {
   options.validate();
+  const double area = surface_area(site.target);
+  if (!(area > 0.0) || !std::isfinite(area)) {
+    throw Error(ErrorKind::bad_geometry,
+                "the target has no surface; give a mesh, a city model or an outline with its "
+                "height");
+  }
   return Planner(options, site, run).plan();
 }
 

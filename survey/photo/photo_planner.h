@@ -18,6 +18,7 @@
 #include "geometry/pose/pose.h"
 #include "geometry/surfaces/mesh.h"
 #include "survey/photo/candidates.h"
+#include "survey/photo/cover_bound.h"
 #include "survey/photo/patterns.h"
 #include "survey/photo/photo_choice.h"
 #include "survey/photo/stereo_quality.h"

@@ -57,7 +57,8 @@ bool Observer::is_in_image(const Photo& photo, std::size_t sample) const {
 
 bool Observer::has_line_of_sight(const Photo& photo, std::size_t sample) const {
   const Observation seen = make_observation(photo.view.position, 0, samples_, sample);
-  if (seen.cosine < min_cosine_ || seen.distance < static_cast<float>(rule_.nearest_focus) ||
+  // At a distance of 0, the cosine is not a number.
+  if (!(seen.cosine >= min_cosine_) || seen.distance < static_cast<float>(rule_.nearest_focus) ||
       seen.distance >= static_cast<float>(rule_.max_distance())) {
     return false;
   }

@@ -58,9 +58,11 @@ TEST(Projection, CountsPixelsWhoseRayMeetsEllipsoid) {
   for (int repetition = 0; repetition < 30; ++repetition) {
     Eigen::Matrix3d axes;
     for (int i = 0; i < 9; ++i) axes(i / 3, i % 3) = random.between(-0.4, 0.4);
-    const Ellipsoid ellipsoid{
-        Vector3d(random.between(-1.5, 1.5), random.between(-1.0, 1.0), random.between(1.5, 3.0)),
-        axes * axes.transpose() + 0.01 * Eigen::Matrix3d::Identity()};
+    Vector3d centre;
+    centre.x() = random.between(-1.5, 1.5);
+    centre.y() = random.between(-1.0, 1.0);
+    centre.z() = random.between(1.5, 3.0);
+    const Ellipsoid ellipsoid{centre, axes * axes.transpose() + 0.01 * Eigen::Matrix3d::Identity()};
     if (ellipsoid.centre.z() * ellipsoid.centre.z() <= ellipsoid.shape(2, 2)) continue;
     const Eigen::Matrix3d inverse = ellipsoid.shape.inverse();
     std::size_t expected = 0;

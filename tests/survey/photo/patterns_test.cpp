@@ -128,5 +128,15 @@ TEST(Patterns, HaveNames) {
   EXPECT_FALSE(pattern_named("spiral"));
 }
 
+TEST_F(PatternPhotosOfABox, AreNotMadeAboveTheLimit) {
+  add_box(target_, {0, 0, 0}, {50000, 40000, 30});
+  for (const Pattern pattern : {Pattern::nadir, Pattern::oblique, Pattern::facade}) {
+    const PatternPhotos large = photos(pattern);
+    EXPECT_TRUE(large.is_too_large) << to_string(pattern);
+    EXPECT_TRUE(large.views.empty()) << to_string(pattern);
+  }
+  EXPECT_FALSE(photos(Pattern::dome).is_too_large);
+}
+
 }  // namespace
 }  // namespace skycap::survey::photo

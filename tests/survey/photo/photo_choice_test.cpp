@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/random_numbers.h"
+#include "survey/photo/cover_bound.h"
 #include "tests/survey/photo/test_scenes.h"
 
 namespace skycap::survey::photo {
@@ -81,6 +82,68 @@ TEST(PhotoChoice, CountsPartnersAsDefinedWhilePhotosComeAndGo) {
     }
     EXPECT_EQ(choice.satisfied(), satisfied);
   }
+}
+
+/// Returns the value of a set of photos by its definition: the sum over samples of phi + 0.3 min(1,
+/// h).
+double value_by_definition(const RandomCase& known, const StereoPairs& pairs,
+                           const std::vector<std::uint32_t>& chosen) {
+  double value = 0.0;
+  for (std::uint32_t s = 0; s < known.samples.size(); ++s) {
+    std::vector<Observation> seen;
+    for (const std::uint32_t c : chosen) {
+      const auto observed = known.problem.observed[c];
+      if (std::ranges::find(observed, s) == observed.end()) continue;
+      seen.push_back(make_observation(known.problem.candidates[c].position, c, known.samples, s));
+    }
+    if (seen.empty()) continue;
+    const int k = std::max(stereo_partners(seen, pairs), 0);
+    value += std::min(known.problem.rule.min_partners + 1, 1 + k) +
+             0.3 * std::min(1.0, reconstructability(seen, pairs));
+  }
+  return value;
+}
+
+TEST(PhotoChoice, GreedyAddsThePhotoWithTheLargestGain) {
+  constexpr std::uint32_t photos = 20;
+  constexpr double rounding = 1e-3;
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    const RandomCase known(photos, 10, 0.5, seed);
+    const StereoPairs pairs(known.problem.rule);
+    PhotoChoice choice(known.problem);
+    choice.greedy({.min_gain = rounding, .max_photos = 8});
+    std::vector<std::uint32_t> taken;
+    for (const std::uint32_t next : choice.chosen()) {
+      std::vector<std::uint32_t> with_next = taken;
+      with_next.push_back(next);
+      const double value = value_by_definition(known, pairs, with_next);
+      for (std::uint32_t other = 0; other < photos; ++other) {
+        const auto is_same = [&](std::uint32_t c) {
+          return (known.problem.candidates[c].position - known.problem.candidates[other].position)
+                     .norm() < known.problem.rule.same_position();
+        };
+        if (std::ranges::any_of(taken, is_same)) continue;
+        std::vector<std::uint32_t> with_other = taken;
+        with_other.push_back(other);
+        EXPECT_LE(value_by_definition(known, pairs, with_other), value + rounding) << seed;
+      }
+      taken = with_next;
+    }
+  }
+}
+
+TEST(PhotoChoice, CountsPartnersOfAnyNumberOfObservations) {
+  RandomCase known(60, 5, 1.0, 3);
+  for (std::size_t i = 0; i < 60; ++i) {  // All photos within 2 degrees: no partners.
+    known.problem.candidates[i].position = {0.005 * static_cast<double>(i), 0.0, 10.0};
+  }
+  known.problem.rule.view_distance = 0.05;
+  PhotoChoice choice(known.problem);
+  choice.greedy({.min_gain = -1.0});
+  EXPECT_EQ(choice.chosen().size(), 60U);
+  for (std::size_t s = 0; s < 5; ++s) EXPECT_EQ(choice.partners(s), 0);
+  choice.destroy_and_repair({20, 1});
+  EXPECT_EQ(choice.chosen().size(), 60U);  // Without satisfied samples, nothing is removed.
 }
 
 TEST(PhotoChoice, NeverTakesTwoPhotosOfOnePosition) {

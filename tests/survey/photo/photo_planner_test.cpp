@@ -155,6 +155,16 @@ TEST_F(PhotosOfABox, AreRejectedWhereNoPhotoIsFree) {
   EXPECT_THAT(message(), HasSubstr("no photo observes the target"));
 }
 
+TEST_F(PhotosOfABox, AreRejectedWithoutSurface) {
+  site_.target = {};
+  EXPECT_THAT(message(), HasSubstr("the target has no surface"));
+  site_.target.vertices = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+  site_.target.triangles = {{0, 1, 2}};
+  EXPECT_THAT(message(), HasSubstr("the target has no surface"));
+  site_.target.vertices[2] = {std::nan(""), 1, 0};
+  EXPECT_THAT(message(), HasSubstr("the target has no surface"));
+}
+
 TEST_F(PhotosOfABox, AreRejectedForABuriedTarget) {
   site_.ground = [](const Eigen::Vector2d&) { return 10.0; };
   EXPECT_THAT(message(), HasSubstr("of the target's surface is exposed"));
