@@ -296,6 +296,42 @@ def coverage_classes(folder):
     return svg
 
 
+# Kinds of patches of coverage.ply by colour; all other colours are shades of green: covered.
+PATCH_COLOURS = {(255, 170, 0): "amber", (215, 30, 40): "red", (120, 60, 200): "violet"}
+
+
+def coverage_map(folder):
+    """The patches of coverage.ply, from two sides."""
+    names, rows = read_ply(folder / "coverage.ply")
+    index = {name: i for i, name in enumerate(names)}
+    summary = summary_of(folder)
+    svg = Svg(900, 440, "Coverage map", "Patches of the surface as the planner knows it: covered, undersampled, unobserved.")
+    colour_of = [PATCH_COLOURS.get(row[index["red"]:index["red"] + 3], "green") for row in rows]
+    extents = [(min(row[index[axis]] for row in rows), max(row[index[axis]] for row in rows)) for axis in "xyz"]
+    scale = 300 / max(high - low for low, high in extents)
+    for left, across, sign, label in ((70, "x", 1, "from the south"), (500, "x", -1, "from the north")):
+        low, high = extents["xyz".index(across)]
+        top = extents[2][1]
+        for colour in ("green", "violet", "amber", "red"):
+            dots = []
+            for row, own in zip(rows, colour_of):
+                if own != colour or row[index["ny"]] * sign > 0:
+                    continue
+                offset = row[index[across]] - low if sign > 0 else high - row[index[across]]
+                dots.append((left + offset * scale, 84 + (top - row[index["z"]]) * scale))
+            if dots:
+                svg.points(dots, 1.7 if colour == "green" else 2.4, colour)
+        svg.text(left + 150, 66, label, 12.5, "soft", "middle")
+    svg.text(40, 34, f"Coverage map of the bunny after {summary['views']} views", 14, "ink", bold=True)
+    labels = (("green", "covered"), ("amber", "undersampled"), ("red", "unobserved, predicted"), ("violet", "unreachable"))
+    for i, (colour, label) in enumerate(labels):
+        x = 60 + 200 * i
+        svg.circle(x, 408, 6, fill=colour)
+        svg.text(x + 14, 412, label, 12.5)
+    svg.text(40, 434, "coverage.ply contains these patches with position, normal and colour.", 12, "soft")
+    return svg
+
+
 # Parts of a report: selector of its element, and the point of its box that gets the number (0 to 1).
 REPORT_PARTS = ((".verdict", (1.06, 0.5), "Status", "complete, or why the survey stopped"),
                 (".lights", (1, 0), "Main values", "with the rule of each colour"),
