@@ -35,7 +35,7 @@
 #include "geometry/io/mesh_io.h"
 #include "geometry/surfaces/mesh_distance.h"
 #include "geometry/surfaces/sight_lines.h"
-#include "missions/photos/colmap_model.h"
+#include "missions/photo/colmap_model.h"
 #include "sim/models/models.h"
 #include "sim/photos/photo_matcher.h"
 #include "sim/photos/simulated_photo.h"
@@ -339,9 +339,9 @@ class Bench {
       photo.yaw = flight::compute_yaw(photo.view);
       photo.pitch = flight::compute_pitch(photo.view);
       plan.photos.push_back(photo);
-      sim::write_png(images[i], folder / "images" / missions::photos::image_name(photo, ".png"));
+      sim::write_png(images[i], folder / "images" / missions::photo::image_name(photo, ".png"));
     }
-    missions::photos::write_colmap(plan, result.matching_pairs, {}, folder / "colmap", ".png");
+    missions::photo::write_colmap(plan, result.matching_pairs, {}, folder / "colmap", ".png");
     std::printf("%zu photos are in %s\n", images.size(), folder.c_str());
   }
 
