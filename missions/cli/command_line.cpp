@@ -57,6 +57,9 @@ void add_plan(CLI::App& app, const Console& console, Action& action) {
                     "Resume an interrupted survey in the results folder");
   command->add_flag("!--no-report", options->has_report, "Do not write the HTML report");
   command->add_flag("--quiet", options->is_quiet, "Print errors only");
+  command->add_option("--control-points", options->control_points,
+                      "Photo missions: CSV file of surveyed ground control points, "
+                      "name,x,y,z or name,latitude,longitude,height");
   command->add_flag("--use-prior-as-truth", keys->uses_prior_as_truth,
                     "Simulate with the target prior data as ground truth");
   command->add_flag("--verbose", options->is_verbose,

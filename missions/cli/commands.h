@@ -33,6 +33,7 @@ struct PlanOptions {
   bool has_report = true;  ///< whether to write an HTML report
   bool is_quiet = false;
   bool is_verbose = false;
+  std::optional<std::filesystem::path> control_points;  ///< CSV file, for photo missions
 };
 
 /// Simulates the survey of a mission and writes the mission package or the results of trials.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -20,6 +21,7 @@
 #include "missions/config/vehicle_reader.h"
 #include "missions/evaluation/survey_scene.h"
 #include "missions/support/flow_text.h"
+#include "missions/wizard/photo_proposal.h"
 
 namespace skycap::missions::cli {
 namespace {
@@ -32,6 +34,7 @@ using support::yaml_quoted;
 struct InitOptions {
   std::string target;  ///< mesh file, builtin:NAME, model:NAME, or "room"
   std::string sensor = "intel_d435", vehicle = "none";
+  std::optional<double> gsd;                   ///< ground sampling distance of a photo camera [m]
   std::vector<double> size = {6.0, 4.0, 2.8};  ///< dimensions of a room [m]
   fs::path out = "mission.yaml";
 
@@ -234,6 +237,60 @@ std::string flight_text(const InitOptions& options, const Proposal& proposal) {
   return text;
 }
 
+/// Mission with a photo camera for a mesh file.
+std::string photo_mission_text(const InitOptions& options) {
+  if (options.is_room() || options.target.starts_with("builtin:") ||
+      options.target.starts_with("model:")) {
+    throw Error(ErrorKind::bad_usage,
+                options.target + ": photos require a mesh file with the shape of the target");
+  }
+  constexpr double uncertainty = 0.1;
+  flight::Vehicle vehicle;
+  double clearance = 0.0;
+  std::string flight;
+  if (options.has_vehicle()) {
+    vehicle = config::find_vehicle(options.vehicle);
+    clearance = compute_default_clearance(options.vehicle);
+    const bool is_file = fs::path(options.vehicle).extension() == ".yaml";
+    flight = fmt::format(
+        "flight:\n"
+        "  vehicle: {}  # a preset (skycap presets) or a description NAME.yaml\n"
+        "  clearance: {:g}  # metres from the vehicle's centre to the prior data\n"
+        "  # A photo camera proves no space free. Outside the prior data, enlarged by their "
+        "uncertainty and the\n"
+        "  # clearance, the air is assumed free; the pilot must check it for trees, wires and "
+        "cranes.\n"
+        "  free_space: assumed\n",
+        is_file ? model_text(options.vehicle, options.out) : yaml_quoted(options.vehicle),
+        clearance);
+  }
+  constexpr bool is_coarse = false;
+  const wizard::PhotoValues values = wizard::propose_photos(options.sensor, *options.gsd, vehicle,
+                                                            clearance, uncertainty, is_coarse);
+  return fmt::format(
+             "# Photos of a model, written by `skycap init`. Read each line and adapt it. Then:\n"
+             "# skycap check {0} and skycap plan {0}\n"
+             "name: {1}  # of the results\n"
+             "prior:\n"
+             "  # The surface to photograph: metres, z up, in the mission frame; otherwise add "
+             "unit "
+             "and up_axis.\n"
+             "  # The key 'uncertainty' is its maximum error in metres.\n"
+             "  - {{file: {2}, role: target, uncertainty: {3:g}}}\n",
+             options.out.string(), yaml_quoted(options.out.stem().string()),
+             model_text(options.target, options.out), uncertainty) +
+         flight +
+         photo_sections(values, fs::path(options.sensor).extension() == ".yaml"
+                                    ? model_text(options.sensor, options.out)
+                                    : yaml_quoted(options.sensor));
+}
+
+std::string survey_mission_text(const InitOptions& options) {
+  const Proposal proposal = proposal_for(options);
+  return head_text(options) + sensor_text(options, proposal) + planner_text(options, proposal) +
+         limits_text(options, proposal) + flight_text(options, proposal);
+}
+
 int init(const InitOptions& options, const Console& console) {
   if (options.out.extension() != ".yaml" && options.out.extension() != ".yml") {
     throw Error(ErrorKind::bad_usage, "--out must end in .yaml");
@@ -242,10 +299,12 @@ int init(const InitOptions& options, const Console& console) {
     throw Error(ErrorKind::bad_usage,
                 options.out.string() + " already exists; choose another --out or remove the file");
   }
-  const Proposal proposal = proposal_for(options);
-  const std::string text = head_text(options) + sensor_text(options, proposal) +
-                           planner_text(options, proposal) + limits_text(options, proposal) +
-                           flight_text(options, proposal);
+  if (!options.gsd && wizard::is_photo_camera(options.sensor)) {
+    throw Error(ErrorKind::bad_usage, "--sensor " + options.sensor +
+                                          " is a photo camera and requires a ground sampling "
+                                          "distance; set --gsd, such as --gsd 0.005");
+  }
+  const std::string text = options.gsd ? photo_mission_text(options) : survey_mission_text(options);
   config::parse_mission(text, options.out.string());  // throws if values conflict
   geometry::write_file(options.out, text);
   console.out << options.out.string() << ": mission for " << options.target << "; next: skycap "
@@ -266,9 +325,14 @@ void add_init(CLI::App& app, const Console& console, Action& action) {
       ->add_option("target", options->target,
                    "Mesh file, builtin:NAME, model:NAME, or room for a live survey")
       ->required();
-  command->add_option(
-      "--sensor", options->sensor,
-      "Sensor preset (skycap presets) or description NAME.yaml (default: intel_d435)");
+  command->add_option("--sensor", options->sensor,
+                      "Sensor preset (skycap presets) or description NAME.yaml (default: "
+                      "intel_d435). A photo camera "
+                      "requires --gsd");
+  command
+      ->add_option("--gsd", options->gsd,
+                   "Ground sampling distance of a photo camera in metres; creates a photo mission")
+      ->check(number_between(1e-5, 10.0));
   command->add_option("--vehicle", options->vehicle,
                       "Vehicle preset (skycap presets), description NAME.yaml, or none (default)");
   command->add_option("--size", options->size, "Size of a room in metres: X Y Z (default: 6 4 2.8)")

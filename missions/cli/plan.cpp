@@ -21,10 +21,10 @@
 #include "missions/package/pilot_text.h"
 #include "missions/package/target_coverage.h"
 #include "missions/package/written_mission.h"
-#include "missions/photo/photo_files.h"
 #include "missions/photo/photo_mission.h"
-#include "missions/photo/photo_report.h"
+#include "missions/photo/photo_results.h"
 #include "missions/photo/photo_site.h"
+#include "missions/photo/photo_summary.h"
 #include "missions/simulation/feasibility.h"
 #include "missions/simulation/survey_runner.h"
 
@@ -201,8 +201,12 @@ int plan_photos(const PlanOptions& options, const config::MissionSetup& setup,
   const auto report = [&](const std::string& what) { progress.show(setup.name + ": " + what); };
   const photo::PhotoAirspace airspace(setup, setup.run.threads);
   photo::PhotoMission mission = photo::plan_photo_mission(setup, airspace, console.stop, report);
+  if (options.control_points) {
+    photo::add_control_points(setup, airspace, *options.control_points, mission);
+  }
   report("writing " + folder.path().string());
   photo::stage_photo_mission(setup, airspace, mission, folder);
+  write_page(package::summary_name, options.has_report, folder, console);
   folder.commit();
   photo::write_colmap_model(setup, mission, folder.path() / "colmap");
   progress.clear();
@@ -227,6 +231,11 @@ int plan(const PlanOptions& options, const Console& console) {
     } catch (const Error& error) {
       throw Error(error.kind(), options.mission.string() + ": " + error.what());
     }
+  }
+  if (options.control_points) {
+    throw Error(ErrorKind::bad_usage,
+                "--control-points requires a photo mission; set sensor.photo_camera or remove the "
+                "option");
   }
   if (options.trials > 0) return plan_trials(options, setup, folder, console);
   ProgressLine progress(console, options.is_quiet);

@@ -8,6 +8,7 @@
 
 #include "geometry/angle.h"
 #include "missions/cli/command_options.h"
+#include "missions/config/photo_camera_reader.h"
 #include "missions/config/sensor_reader.h"
 #include "missions/config/vehicle_reader.h"
 
@@ -68,8 +69,28 @@ Json to_json(const sim::DepthCameraConfig& camera) {
           {"vertical_fov_deg", degrees(camera.camera.vertical_fov)}};
 }
 
+Json to_json(const geometry::PhotoCamera& camera) {
+  const geometry::PhotoCameraConfig& config = camera.config();
+  constexpr double millimetres = 1e3, distance = 10.0;
+  return {
+      {"sensor_mm", {millimetres * config.sensor_size.x(), millimetres * config.sensor_size.y()}},
+      {"width_px", config.width},
+      {"height_px", config.height},
+      {"focal_length_mm", millimetres * config.focal_length},
+      {"gsd_at_10_m_mm", millimetres * camera.gsd(distance)},
+      {"min_interval_s", config.min_interval},
+      {"shutter",
+       config.shutter == geometry::ShutterKind::mechanical ? "mechanical" : "electronic"}};
+}
+
 Json all_presets() {
-  Json vehicles = Json::array(), sensors = Json::array();
+  Json vehicles = Json::array(), sensors = Json::array(), photo_cameras = Json::array();
+  for (const std::string_view name : config::photo_camera_presets()) {
+    const geometry::PhotoCamera camera(config::find_photo_camera(std::string(name)));
+    Json json{{"name", name}, {"title", camera.config().name}};
+    json.update(to_json(camera));
+    photo_cameras.push_back(std::move(json));
+  }
   for (const std::string_view name : config::vehicle_presets()) {
     Json vehicle = to_json(config::find_vehicle(std::string(name)));
     vehicle["name"] = name;
@@ -81,7 +102,7 @@ Json all_presets() {
     sensor.update(std::visit([](const auto& config) { return to_json(config); }, found.sensor));
     sensors.push_back(std::move(sensor));
   }
-  return {{"vehicles", vehicles}, {"sensors", sensors}};
+  return {{"vehicles", vehicles}, {"sensors", sensors}, {"photo_cameras", photo_cameras}};
 }
 
 std::string vehicle_line(const Json& vehicle) {
@@ -108,6 +129,18 @@ std::string sensor_line(const Json& sensor) {
                      resolution);
 }
 
+std::string photo_camera_line(const Json& camera) {
+  const auto number = [&](const char* key) { return camera[key].get<double>(); };
+  return fmt::format(
+      "  {:<20} {:>12} mm  {:>12} px  {:>5.2f} mm  {:>5.2f} mm  {:>5.3g} s  {}\n",
+      camera["name"].get<std::string>(),
+      fmt::format("{:g} x {:g}", camera["sensor_mm"][0].get<double>(),
+                  camera["sensor_mm"][1].get<double>()),
+      fmt::format("{} x {}", camera["width_px"].get<int>(), camera["height_px"].get<int>()),
+      number("focal_length_mm"), number("gsd_at_10_m_mm"), number("min_interval_s"),
+      camera["shutter"].get<std::string>());
+}
+
 int presets(const PresetsOptions& options, const Console& console) {
   const Json all = all_presets();
   if (options.is_json) {
@@ -123,6 +156,11 @@ int presets(const PresetsOptions& options, const Console& console) {
       fmt::format("Sensors (scan.sensor; LiDARs also sensor.lidar)\n  {:<20} {:<14} {:<16}  {}\n",
                   "name", "kind", "range", "resolution");
   for (const Json& sensor : all["sensors"]) text += sensor_line(sensor);
+  text += fmt::format(
+      "Photo cameras (sensor.photo_camera)\n  {:<20} {:>15}  {:>15}  {:>8}  {:>8}  {:>7}  {}\n",
+      "name", "sensor", "image", "focal", "at 10 m", "interval", "shutter");
+  for (const Json& camera : all["photo_cameras"]) text += photo_camera_line(camera);
+  text += "\"at 10 m\" is the ground sampling distance at a distance of 10 m\n";
   console.out << text << std::flush;
   return 0;
 }

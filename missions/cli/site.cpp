@@ -13,6 +13,8 @@
 #include "missions/report/object_map.h"
 #include "missions/site_data/file_reader.h"
 #include "missions/site_data/prior_text.h"
+#include "missions/site_data/surface_points.h"
+#include "missions/wizard/photo_proposal.h"
 #include "missions/wizard/proposal.h"
 #include "missions/wizard/target.h"
 
@@ -35,8 +37,9 @@ struct SiteOptions {
   std::optional<double> height;  ///< value of prior.height
   std::optional<fs::path> terrain;
   std::vector<fs::path> obstacles;
-  std::string vehicle = "generic";
+  std::string vehicle;          ///< preset or file; empty: that of the photo camera, or generic
   std::string sensor;           ///< preset or file; empty: the vehicle's camera
+  std::optional<double> gsd;    ///< ground sampling distance of a photo camera [m]
   std::optional<fs::path> out;  ///< mission file; default: site.yaml
 };
 
@@ -85,15 +88,36 @@ void read_base(const SiteOptions& options, wizard::ImportOptions& import_options
   import_options.base = base;
 }
 
+/// Throws if only one of photo camera and ground sampling distance is set.
+void check_photo_options(const SiteOptions& options) {
+  if (options.gsd && options.sensor.empty()) {
+    throw Error(ErrorKind::bad_usage,
+                "--gsd requires a photo camera; set --sensor to one of the photo cameras of skycap "
+                "presets");
+  }
+  if (!options.gsd && wizard::is_photo_camera(options.sensor)) {
+    throw Error(ErrorKind::bad_usage, "--sensor " + options.sensor +
+                                          " is a photo camera and requires a ground sampling "
+                                          "distance; set --gsd, such as --gsd 0.005");
+  }
+}
+
+std::string make_vehicle(const SiteOptions& options) {
+  if (!options.vehicle.empty()) return options.vehicle;
+  return options.gsd ? wizard::find_photo_vehicle(options.sensor) : "generic";
+}
+
 wizard::SiteRequest to_site_request(const SiteOptions& options) {
+  check_photo_options(options);
   wizard::SiteRequest request{
       .map = options.map,
       .target = make_pick(options),
       .import_options = {.crs = options.crs, .vertical = {}, .base = {}, .height = options.height},
       .terrain = options.terrain,
       .obstacles = options.obstacles,
-      .vehicle = options.vehicle,
-      .sensor = options.sensor};
+      .vehicle = make_vehicle(options),
+      .sensor = options.sensor,
+      .gsd = options.gsd};
   for (const site_data::HeightDatum datum : datums) {
     if (options.vertical == to_string(datum)) request.import_options.vertical = datum;
   }
@@ -101,8 +125,28 @@ wizard::SiteRequest to_site_request(const SiteOptions& options) {
   return request;
 }
 
+/// Points on the targets of the prior data.
+std::vector<Eigen::Vector3f> target_points(const scene::SceneOptions& scene) {
+  constexpr std::size_t max_points = 100'000;
+  constexpr double spacing = 0.1;
+  std::vector<Eigen::Vector3f> points;
+  for (const site_data::Prior& prior : scene.priors->priors) {
+    if (prior.role != site_data::Role::target) continue;
+    for (const site_data::Object& object : prior.objects) {
+      const std::vector<Eigen::Vector3f> own =
+          site_data::spread_over(object, max_points, spacing).positions;
+      points.insert(points.end(), own.begin(), own.end());
+    }
+  }
+  return points;
+}
+
 std::string make_page(const std::string& name, const evaluation::SimulationOptions& options,
                       const fs::path& file) {
+  if (options.scene.model.empty()) {  // a photo mission: its target is prior data alone
+    return report::mission_page(name, options.survey, options.scene, target_points(options.scene),
+                                options.survey.flight.takeoff);
+  }
   constexpr unsigned all_processors = 0;
   const evaluation::SurveyScene scene(options, file.parent_path(), all_processors);
   return report::mission_page(name, options.survey, options.scene, scene.samples().points,
@@ -129,8 +173,9 @@ std::string make_command(const SiteOptions& options) {
   if (options.height) add("--height", fmt::format("{:g}", *options.height));
   if (options.terrain) add("--terrain", options.terrain->string());
   for (const fs::path& obstacle : options.obstacles) add("--obstacle", obstacle.string());
-  if (options.vehicle != SiteOptions{}.vehicle) add("--vehicle", options.vehicle);
+  add("--vehicle", options.vehicle);
   add("--sensor", options.sensor);
+  if (options.gsd) add("--gsd", fmt::format("{:g}", *options.gsd));
   if (options.out) add("--out", options.out->string());
   return command;
 }
@@ -243,11 +288,18 @@ void add_site(CLI::App& app, const Console& console, Action& action) {
   command->add_option("--obstacle", options->obstacles, "Further file with obstacles")
       ->type_size(1)
       ->allow_extra_args(false);
-  command->add_option("--vehicle", options->vehicle, "Vehicle preset or file (default: generic)");
+  command->add_option(
+      "--vehicle", options->vehicle,
+      "Vehicle preset or file (default: the preset with the photo camera, otherwise "
+      "generic)");
   command->add_option(
       "--sensor", options->sensor,
       "Sensor preset (skycap presets) or LiDAR file NAME.yaml (default: the vehicle's "
-      "camera, otherwise a depth camera of 320 x 240 pixels)");
+      "camera, otherwise a depth camera of 320 x 240 pixels). A photo camera requires --gsd");
+  command
+      ->add_option("--gsd", options->gsd,
+                   "Ground sampling distance of a photo camera in metres; creates a photo mission")
+      ->check(number_between(1e-5, 10.0));
   command->add_option("--out", options->out, "Mission file (default: site.yaml)");
   run(*command, options, propose_site, console, action);
 }

@@ -272,7 +272,7 @@ std::string figures(const FieldSheetSite& site, const SurveyMission& mission) {
   const std::string time = longest == 1.0
                                ? fmt::format("{:.0f} min", minutes)
                                : fmt::format("{:.0f} to {:.0f} min", minutes, longest * minutes);
-  std::string coverage = percent_text(site.survey_coverage), of = "of the surface, by the survey";
+  std::string coverage = percent_text(site.survey_coverage), of = site.coverage_of;
   if (mission.written) {
     const WrittenCoverage& part = mission.written->parts.front();
     coverage = percent_text(part.again.visible.value_or(part.again.all));
@@ -399,13 +399,18 @@ std::string field_sheet(const FieldSheetSite& site, const flight::FlightOptions&
   for (const PilotSteps& part : pilot_steps(options, mission)) {
     html += "<h2>Before the flight: " + escaped(part.whom) + "</h2>\n" + list("ol", "", part.steps);
   }
-  if (auto warnings = pilot_warnings(mission); !warnings.empty()) {
+  std::vector<std::string> warnings = site.warnings;
+  for (std::string& warning : pilot_warnings(mission)) warnings.push_back(std::move(warning));
+  if (!warnings.empty()) {
     html += "<h2>Warnings</h2>\n" + list("ul", "", shortened(std::move(warnings), max_warnings));
   }
   html += "</div><div>\n<h2>Check</h2>\n" +
           list("ul", " class=\"check\"", checks(options, mission, site));
   if (const auto items = missing_items(mission); !items.empty()) {
     html += "<h2>What will be missing</h2>\n" + list("ul", "", items);
+  }
+  for (const SheetList& more : site.lists) {
+    html += "<h2>" + escaped(more.title) + "</h2>\n" + list("ul", "", more.items);
   }
   html += "</div></div>\n<h2>Sorties and batteries</h2>\n" + sorties_table(mission);
   return html +

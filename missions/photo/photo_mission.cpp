@@ -13,6 +13,7 @@
 #include "flight/route/tour.h"
 #include "geometry/error.h"
 #include "missions/config/mission_document.h"
+#include "missions/photo/takeoff_point.h"
 
 namespace skycap::missions::photo {
 namespace {
@@ -46,6 +47,23 @@ PhotoTour compute_tour(const flight::FlightOptions& options, const std::vector<V
   }
   tour.duration += time_between(motion, rest, views[last], views[0]);
   return tour;
+}
+
+/// Returns the completeness over the duration of tours through the first photos, at up to 12
+/// numbers of photos.
+std::vector<TimeCurvePoint> make_time_curve(const flight::FlightOptions& options,
+                                            const survey::photo::PhotoPlanResult& result) {
+  constexpr std::size_t max_points = 12;
+  std::vector<TimeCurvePoint> curve;
+  const std::size_t photos = std::min(result.views.size(), result.curve.size());
+  const std::size_t points = std::min(max_points, photos);
+  for (std::size_t i = 1; i <= points; ++i) {
+    const std::size_t count = i * photos / points;
+    const std::vector<View> first(result.views.begin(),
+                                  result.views.begin() + static_cast<std::ptrdiff_t>(count));
+    curve.push_back({count, result.curve[count - 1].completeness, compute_tour(options, first)});
+  }
+  return curve;
 }
 
 /// Space for photos, without the positions that no route reaches.
@@ -137,7 +155,7 @@ void plan_route(const config::MissionSetup& setup, const PhotoAirspace& airspace
   if (views.empty()) return;
   mission.flight.emplace();
   mission.flight->image_motion = options.image_motion_bounds();
-  mission.pad = options.pad(views.front().position);
+  mission.pad = choose_takeoff(options, views);
   const std::vector<package::Polyline> paths(views.size());
   mission.flight->route =
       package::plan_flight(options, airspace.measured(), mission.pad, views, paths, {}, stop);
@@ -170,6 +188,18 @@ survey::photo::PhotoPlanResult plan_within_limits(const config::MissionSetup& se
   return survey::photo::plan_photos(options, site, run);
 }
 
+/// Warns of a target in the air or under the ground, which indicates a wrong vertical datum.
+void warn_about_height(const survey::photo::PhotoSite& site, PhotoMission& mission) {
+  constexpr double much = 10.0;
+  const Eigen::AlignedBox3d box = geometry::bounding_box(site.target);
+  const double above = box.min().z() - site.foot;
+  if (above < much && box.max().z() > site.foot) return;
+  mission.warnings.push_back(
+      fmt::format("the base of the target is {:.1f} m {} the ground; check vertical and offset of "
+                  "the prior data",
+                  std::abs(above), above > 0.0 ? "above" : "below"));
+}
+
 void add_warnings(const config::MissionSetup& setup, PhotoMission& mission) {
   const config::MissionDocument& document = *setup.document;
   if (document.flight.free_space == config::FreeSpaceRule::assumed &&
@@ -178,6 +208,12 @@ void add_warnings(const config::MissionSetup& setup, PhotoMission& mission) {
   }
   for (const std::string& warning : mission.result.warnings) mission.warnings.push_back(warning);
   if (!mission.flight) return;
+  if (!setup.flight().takeoff) {
+    mission.warnings.push_back(fmt::format(
+        "flight.takeoff is not set: the plan uses the take-off point ({:g}, {:g}, {:g}), chosen so "
+        "that the photos have verified returns. Inspect it and set flight.takeoff",
+        mission.pad.x(), mission.pad.y(), mission.pad.z()));
+  }
   const auto& unreached = mission.flight->route.unreached;
   if (!unreached.empty()) {
     mission.warnings.push_back(fmt::format(
@@ -230,6 +266,7 @@ PhotoMission plan_photo_mission(const config::MissionSetup& setup, const PhotoAi
   }
   report("comparing patterns");
   mission.tour = compute_tour(setup.flight(), mission.result.views);
+  mission.time_curve = make_time_curve(setup.flight(), mission.result);
   for (const survey::photo::PatternResult& pattern : mission.result.patterns) {
     mission.patterns.push_back({compute_tour(setup.flight(), pattern.views),
                                 compute_tour(setup.flight(), pattern.pruned_views)});
@@ -241,6 +278,7 @@ PhotoMission plan_photo_mission(const config::MissionSetup& setup, const PhotoAi
       mission.flight ? flown_photos(setup, mission) : toured_photos(mission.result);
   mission.pairs = pairs_in_flight_order(mission);
   add_warnings(setup, mission);
+  warn_about_height(site, mission);
   return mission;
 }
 

@@ -12,6 +12,7 @@
 
 #include "missions/config/mission_setup.h"
 #include "missions/package/flight_files.h"
+#include "missions/photo/control_points.h"
 #include "missions/photo/photo_site.h"
 #include "survey/photo/photo_plan.h"
 #include "survey/photo/photo_planner.h"
@@ -26,6 +27,13 @@ struct PhotoTour {
       0.0;  ///< Duration without the legs from and to the pad [s]. 0 without a vehicle.
 };
 
+/// Tour through the first photos of the plan, most useful first.
+struct TimeCurvePoint {
+  std::size_t photos = 0;
+  double completeness = 0.0;  ///< Expected completeness of the exposed surface.
+  PhotoTour tour;
+};
+
 /// Tours of a pattern.
 struct PatternTours {
   PhotoTour whole, pruned;
@@ -37,10 +45,12 @@ struct PhotoMission {
   /// Pairs of plan.photos to be matched, see PhotoPlanResult::matching_pairs.
   std::vector<survey::photo::PhotoPair> pairs;
   PhotoTour tour;                                ///< Tour of the plan.
+  std::vector<TimeCurvePoint> time_curve;        ///< Ascending numbers of photos.
   std::vector<PatternTours> patterns;            ///< Tours of result.patterns.
   std::optional<package::SurveyMission> flight;  ///< Flight, if the mission has a vehicle.
   Eigen::Vector3d pad = Eigen::Vector3d::Zero();
-  std::vector<std::string> warnings;  ///< Warnings for the user, displayed first.
+  std::vector<ControlPoint> control_points;  ///< Surveyed points, see control_table().
+  std::vector<std::string> warnings;         ///< Warnings for the user, displayed first.
 };
 
 /// Warning in the results of a mission that assumes free space.

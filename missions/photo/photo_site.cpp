@@ -1,6 +1,11 @@
 #include "missions/photo/photo_site.h"
 
+#include <vector>
+
+#include <fmt/format.h>
+
 #include "geometry/error.h"
+#include "geometry/pose/prism.h"
 #include "missions/site_data/site_priors.h"
 
 namespace skycap::missions::photo {
@@ -13,6 +18,19 @@ using site_data::Role;
 /// Obstacles more than this number of view distances from a target are not considered as occluders.
 constexpr double surroundings_reach = 3.0;
 
+/// Throws if the targets are not inside the geofence: they are in another frame than the mission.
+void require_inside_fence(const config::MissionSetup& setup, const geometry::Mesh& targets) {
+  const std::vector<Eigen::Vector2d>& fence = setup.flight().airspace.geofence;
+  const AlignedBox3d box = geometry::bounding_box(targets);
+  const Vector3d centre = box.center();
+  if (fence.empty() || geometry::contains(fence, centre.head<2>())) return;
+  throw Error(ErrorKind::bad_config,
+              fmt::format("the target is outside site.geofence: the centre of its base is at "
+                          "({:.1f}, {:.1f}, {:.1f}) m of the mission frame; set crs and offset, or "
+                          "place, of the prior data to those of the program that wrote the file",
+                          centre.x(), centre.y(), box.min().z()));
+}
+
 geometry::Mesh select_targets(const config::MissionSetup& setup) {
   geometry::Mesh targets = make_surfaces(*setup.scene().priors, Role::target);
   if (targets.triangles.empty()) {
@@ -20,6 +38,7 @@ geometry::Mesh select_targets(const config::MissionSetup& setup) {
                 "prior data with role: target has no surface; photos require a mesh, a city model "
                 "or an outline with its height");
   }
+  require_inside_fence(setup, targets);
   return targets;
 }
 

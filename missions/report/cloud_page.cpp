@@ -77,9 +77,12 @@ std::string cloud_page(const std::filesystem::path& file) {
 std::string mission_page(const std::string& name, const session::SurveyOptions& survey,
                          const scene::SceneOptions& scene, std::span<const Eigen::Vector3f> surface,
                          const std::optional<Eigen::Vector3d>& pad) {
+  const Json facts = scene.model.empty()
+                         ? Json{"target from prior data"}
+                         : Json{scene.model, "model of the simulation, not yet measured"};
   const Json data = {{"kind", "mission"},
                      {"title", name},
-                     {"facts", {scene.model, "model of the simulation, not yet measured"}},
+                     {"facts", facts},
                      {"scene", scene_outline(survey, scene, pad)}};
   return page_text(name, data, {{"model", encode_cloud(surface, {}, default_report_points)}});
 }

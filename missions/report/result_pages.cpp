@@ -2,11 +2,14 @@
 
 #include <algorithm>
 
+#include <nlohmann/json.hpp>
+
 #include "geometry/error.h"
 #include "geometry/io/file.h"
 #include "missions/package/package.h"
 #include "missions/report/comparison_page.h"
 #include "missions/report/district_page.h"
+#include "missions/report/photo_page.h"
 #include "missions/report/scan_page.h"
 #include "missions/report/survey_report.h"
 
@@ -36,6 +39,13 @@ std::vector<ResultPage> pages_in(const fs::path& folder) {
                                        names);
 }
 
+/// Returns the report of summary.json: of a survey or of a photo mission.
+std::string summary_page(const ResultFinder& results, std::size_t max_points) {
+  return is_photo_summary(read_results(results(package::summary_name)))
+             ? photo_page(results, max_points)
+             : survey_report(results, max_points);
+}
+
 /// Replaces names of staged files in a message by their final names.
 std::string by_final_names(std::string message, const std::vector<std::string>& names,
                            const geometry::OutputFolder& folder) {
@@ -54,7 +64,7 @@ std::string by_final_names(std::string message, const std::vector<std::string>& 
 
 const std::vector<ResultPage>& result_pages() {
   static const std::vector<ResultPage> pages = {
-      {package::summary_name, package::report_name, survey_report},
+      {package::summary_name, package::report_name, summary_page},
       {"trials.json", "trials.html",
        [](const ResultFinder& results, std::size_t) { return trials_page(results); }},
       {"results.json", "benchmark.html",

@@ -15,6 +15,7 @@
 #include "missions/site_data/formats/cloud_files.h"
 #include "missions/site_data/formats/dxf_header.h"
 #include "missions/site_data/formats/geodata_file.h"
+#include "missions/site_data/formats/photogrammetry_offset.h"
 #include "missions/site_data/formats/scene_facts.h"
 #include "missions/site_data/site_transform.h"
 
@@ -218,7 +219,35 @@ Opened open_file(const fs::path& file, Role role) {
   return opened;
 }
 
-FileContents mesh_contents(const fs::path& file) {
+/// Moves a mesh of a photogrammetry program to map coordinates, unless the source states its
+/// position.
+void apply_photogrammetry_offset(const Source& source, FileContents& contents) {
+  if (source.pose || !source.offset.isZero()) return;
+  const auto found = find_photogrammetry_offset(source.file);
+  if (!found) return;
+  const std::string name = found->file.filename().string();
+  if (found->crs.empty() && source.crs.empty()) {
+    throw Error(ErrorKind::bad_config,
+                source.file.string() + ": has the coordinate offset of " + name +
+                    " but no coordinate reference system; set crs to that of the photogrammetry "
+                    "project, or set offset: [0, 0, 0] and place");
+  }
+  for (Eigen::Vector3d& vertex : contents.objects.front().mesh.vertices) vertex += found->offset;
+  if (source.crs.empty()) {
+    contents.crs = found->crs;
+    contents.vertical = HeightDatum::ellipsoid;
+  }
+  contents.notes.push_back(
+      fmt::format("coordinate offset ({:.3f}, {:.3f}, {:.3f}) read from {}{}", found->offset.x(),
+                  found->offset.y(), found->offset.z(), name,
+                  source.crs.empty() ? ", in " + found->crs +
+                                           "; heights are taken as ellipsoid heights unless "
+                                           "vertical is set"
+                                     : ""));
+}
+
+FileContents mesh_contents(const Source& source) {
+  const fs::path& file = source.file;
   FileContents contents;
   contents.format = "mesh" + geometry::lower_extension(file);
   contents.is_scene = true;
@@ -227,6 +256,7 @@ FileContents mesh_contents(const fs::path& file) {
   geometry::MeshOptions options;
   options.note = [&](const std::string& note) { contents.notes.push_back(note); };
   object.mesh = geometry::read_mesh(file, options);
+  apply_photogrammetry_offset(source, contents);
   return contents;
 }
 
@@ -296,7 +326,7 @@ FileContents parsed(Opened opened, const Source& source, const SiteFrame& site) 
     case Format::scene:
       return scene_contents(source);
     case Format::mesh:
-      return mesh_contents(file);
+      return mesh_contents(source);
     case Format::cloud:
       break;
   }
@@ -316,8 +346,9 @@ thread_local ReadOnce* read_once = nullptr;
 SharedContents read_contents(const Source& source, const SiteFrame& site) {
   std::error_code ignored;  // The reader reports file errors.
   const std::string key =
-      fmt::format("{}\n{}\n{}\n{}", fs::canonical(source.file, ignored).string(),
-                  source.select.layer, source.height_attribute, source.unit.has_value());
+      fmt::format("{}\n{}\n{}\n{}\n{}\n{}", fs::canonical(source.file, ignored).string(),
+                  source.select.layer, source.height_attribute, source.unit.has_value(),
+                  source.pose || !source.offset.isZero(), source.crs);
   if (read_once != nullptr && read_once->contents_ && read_once->key_ == key) {
     return read_once->contents_;
   }

@@ -232,7 +232,9 @@ void require_use(const Source& source, const Prior& prior) {
     throw Error(ErrorKind::bad_config, source.file.string() + ": " + what);
   };
   if (source.role == Role::target && prior.objects.empty()) {
-    reject("contains no object surfaces; a target requires them. Use role: obstacle");
+    reject(
+        "contains no object surfaces; a target requires them. Reconstruct a mesh (skycap "
+        "reconstruct), or use role: obstacle");
   }
   const auto is_surface = [](const Object& object) { return has_area(object.mesh); };
   if (source.role == Role::terrain && prior.points.empty() && prior.grid.nodes.empty() &&

@@ -103,6 +103,12 @@ std::string flight_section(const MissionValues& values) {
         "are free.\n  takeoff: {}\n",
         vector_text(*values.pad));
   }
+  if (values.photo) {
+    return text +
+           "  # A photo camera proves no space free. Outside the prior data, enlarged by their "
+           "uncertainty and the\n  # clearance, the air is assumed free; the pilot must check it "
+           "for trees, wires and cranes.\n  free_space: assumed\n";
+  }
   text += fmt::format(
       "  # In this box unknown space is treated as occupied. Outside it the air is assumed free, "
       "except\n  # for prior data; the pilot must check it. Extend the box over trees, wires and "
@@ -158,6 +164,24 @@ std::string sensor_section(const MissionValues& values) {
       is_file ? path_text(values.sensor, values.file) : yaml_quoted(values.sensor));
 }
 
+/// Head of a photo mission, which requires no simulated scene.
+std::string photo_head(const MissionValues& values) {
+  return fmt::format(
+      "# First photo mission, proposed by `{}`. It can be planned unchanged. Values that the files "
+      "do not\n# contain are estimates: check every line before you fly. `skycap check` prints "
+      "what "
+      "the files contain.\nname: {}  # of the results\n",
+      values.command, yaml_quoted(values.file.stem().string()));
+}
+
+/// The sections of a photo mission after those of the flight.
+std::string photo_section(const MissionValues& values) {
+  const std::string& camera = values.photo->camera;
+  const bool is_file = std::filesystem::path(camera).extension() == ".yaml";
+  return photo_sections(*values.photo,
+                        is_file ? path_text(camera, values.file) : yaml_quoted(camera));
+}
+
 std::string planner_section(const MissionValues& values) {
   const double distance = values.registration_distance;
   std::string text =
@@ -192,6 +216,10 @@ bool is_lidar(const std::string& sensor) {
 }
 
 std::string mission_text(const MissionValues& values) {
+  if (values.photo) {
+    return photo_head(values) + prior_section(values) + site_section(values) +
+           flight_section(values) + photo_section(values);
+  }
   const std::string name = values.file.stem().string();
   return fmt::format(
              "# First mission, proposed by `{}`. It can be run unchanged. Values that the files do "

@@ -11,6 +11,7 @@
 
 #include "flight/export/geodesy.h"
 #include "missions/site_data/source.h"
+#include "missions/wizard/photo_proposal.h"
 
 namespace skycap::missions::wizard {
 
@@ -32,7 +33,8 @@ struct MissionValues {
   std::optional<Eigen::Vector3d> pad{};        ///< take-off point; empty in a draft
   double clearance = 0.0, registration_distance = 0.0, view_distance = 0.0;
   std::string sensor{};  ///< preset, or file of a LiDAR; empty: a depth camera of 320 x 240 pixels
-  std::optional<double> max_range{};  ///< depth to plan with [m]; none: sensor_range()
+  std::optional<double> max_range{};   ///< depth to plan with [m]; none: sensor_range()
+  std::optional<PhotoValues> photo{};  ///< Values of a photo mission instead of `sensor`.
 };
 
 /// Returns the maximum range of the proposed sensor [m].

@@ -28,10 +28,11 @@ flight::Obstacles without_fence(flight::Obstacles rules) {
 
 }  // namespace
 
-PadSearch::PadSearch(flight::FlightOptions flight, std::vector<AlignedBox3d> unknown)
+PadSearch::PadSearch(flight::FlightOptions flight, std::vector<AlignedBox3d> unknown,
+                     PadFence fence)
     : flight_(std::move(flight)),
       unknown_(std::move(unknown)),
-      space_(without_fence(flight_.rules())),
+      space_(fence == PadFence::keep ? flight_.rules() : without_fence(flight_.rules())),
       pad_space_(without_ground(without_fence(flight_.rules()))) {}
 
 std::optional<Vector3d> PadSearch::find_pad_beside(const AlignedBox3d& unknown, double top,

@@ -12,12 +12,17 @@
 
 namespace skycap::missions::wizard {
 
+/// Treatment of the geofence in a search. A proposal ignores it, because the geofence is extended
+/// around the pad afterwards.
+enum class PadFence { ignore, keep };
+
 class PadSearch {
  public:
   /// Uses the obstacles of the flight's airspace. Without terrain, the ground is at the airspace's
   /// base. `unknown` contains boxes around other targets in which unobserved space is occupied;
   /// climbs keep clear of them.
-  explicit PadSearch(flight::FlightOptions flight, std::vector<Eigen::AlignedBox3d> unknown = {});
+  explicit PadSearch(flight::FlightOptions flight, std::vector<Eigen::AlignedBox3d> unknown = {},
+                     PadFence fence = PadFence::ignore);
 
   /// On the ground beside an unknown box, with nothing known over it or near it up to `top` (z): as
   /// near as there is room, and there where most of it is. Views may be up to `view_reach` beside
@@ -33,8 +38,7 @@ class PadSearch {
   std::optional<Eigen::Vector3d> at(const Eigen::Vector2d& position) const;
 
   /// Returns the clearance of the climb from a pad to `top` (z), up to `up_to` [m]. Returns 0 if
-  /// the pad is invalid. The geofence is not considered, because it is extended around the pad
-  /// later.
+  /// the pad is invalid.
   double climb_clearance(const Eigen::Vector3d& pad, double top, double up_to) const;
 
  private:

@@ -58,6 +58,12 @@ AlignedBox3d fence_around(const AlignedBox3d& unknown, const std::optional<Vecto
   return rounded_out(fence, 1.0);
 }
 
+/// The values with the geofence of their view distance.
+MissionValues with_fence(MissionValues values) {
+  values.fence = fence_around(values.unknown, values.pad, values.view_distance);
+  return values;
+}
+
 }  // namespace
 
 MissionValues values_for(MissionValues values, const AlignedBox3d& target, double uncertainty,
@@ -66,14 +72,12 @@ MissionValues values_for(MissionValues values, const AlignedBox3d& target, doubl
   values.clearance = proposed_clearance;
   values.registration_distance = compute_coverage_distance(target);
   values.view_distance = std::round(std::clamp(target.sizes().maxCoeff(), 10.0, 25.0));
-  values.fence = fence_around(values.unknown, std::nullopt, values.view_distance);
-  return values;
+  return with_fence(std::move(values));
 }
 
 MissionValues with_pad(MissionValues values, const Vector3d& pad) {
   values.pad = pad;
-  values.fence = fence_around(values.unknown, pad, values.view_distance);
-  return values;
+  return with_fence(std::move(values));
 }
 
 double compute_max_climb_altitude(const MissionValues& values) {
@@ -121,6 +125,24 @@ AlignedBox3d from_below_base(AlignedBox3d scene, const Target& target) {
   return scene;
 }
 
+/// The values of a photo mission. An outline is the only knowledge of the shape: two flights.
+MissionValues with_photos(MissionValues values, const SiteRequest& request,
+                          const flight::Vehicle& vehicle, const Target& target) {
+  const site_data::Source& source = values.sources.front();
+  const bool is_outline = source.base_on_terrain || source.base;
+  values.photo = propose_photos(request.sensor, *request.gsd, vehicle, values.clearance,
+                                target.uncertainty, is_outline);
+  values.view_distance = values.photo->view_distance;
+  return with_fence(std::move(values));
+}
+
+/// Maximum horizontal distance of views from the target [m]. Patterns that look down at an angle
+/// also start beside a tall target.
+double compute_view_reach(const MissionValues& values, const Target& target) {
+  if (!values.photo) return values.view_distance;
+  return values.view_distance + 0.5 * target.box.sizes().z();
+}
+
 }  // namespace
 
 std::string propose_mission(const SiteRequest& request, const std::filesystem::path& file) {
@@ -133,17 +155,24 @@ std::string propose_mission(const SiteRequest& request, const std::filesystem::p
                                      .sees_neighbours = true,
                                      .unknown = {}},
                                     target.box, target.uncertainty, request.terrain.has_value());
-  values.clearance = clearance_for(config::find_vehicle(request.vehicle));
-  values = with_sensor(std::move(values), make_sensor(request));
+  const flight::Vehicle vehicle = config::find_vehicle(request.vehicle);
+  values.clearance = clearance_for(vehicle);
+  if (request.gsd) {
+    values = with_photos(std::move(values), request, vehicle, target);
+  } else {
+    values = with_sensor(std::move(values), make_sensor(request));
+  }
   if (request.import_options.vertical == site_data::HeightDatum::takeoff) {
     values.pad = provisional_pad(values);
   }
   const config::MissionSetup mission = config::parse_mission(mission_text(values), file.string());
-  values.scene =
-      rounded_out(from_below_base(mission.survey().planner.scene_box.value(), target), 0.1);
+  if (!values.photo) {
+    values.scene =
+        rounded_out(from_below_base(mission.survey().planner.scene_box.value(), target), 0.1);
+  }
   const auto pad = PadSearch(mission.flight())
                        .find_pad_beside(values.unknown, compute_max_climb_altitude(values),
-                                        values.view_distance);
+                                        compute_view_reach(values, target));
   if (!pad) {
     throw Error(ErrorKind::bad_config, request.map.string() +
                                            ": no free, level and even take-off point within 100 m "

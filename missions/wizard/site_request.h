@@ -48,6 +48,7 @@ struct SiteRequest {
   std::string vehicle = "generic";
   std::string
       sensor;  ///< preset; LiDARs also NAME.yaml. Empty: the vehicle's camera, if it has one
+  std::optional<double> gsd;  ///< Ground sampling distance of a photo camera, `sensor` [m].
 };
 
 }  // namespace skycap::missions::wizard

@@ -23,7 +23,7 @@
 #include "geometry/io/mesh_io.h"
 #include "geometry/surfaces/mesh_distance.h"
 #include "geometry/surfaces/sight_lines.h"
-#include "missions/photos/colmap_model.h"
+#include "missions/photo/colmap_model.h"
 #include "sim/photos/photo_matcher.h"
 #include "sim/photos/simulated_photo.h"
 #include "survey/photo/photo_planner.h"
@@ -237,9 +237,9 @@ class Bench {
       photo.yaw = flight::compute_yaw(photo.view);
       photo.pitch = flight::compute_pitch(photo.view);
       plan.photos.push_back(photo);
-      sim::write_png(images[i], folder / "images" / missions::photos::image_name(photo, ".png"));
+      sim::write_png(images[i], folder / "images" / missions::photo::image_name(photo, ".png"));
     }
-    missions::photos::write_colmap(plan, pairs_of(result), {}, folder / "colmap", ".png");
+    missions::photo::write_colmap(plan, pairs_of(result), {}, folder / "colmap", ".png");
     std::printf("%zu photos are in %s\n", images.size(), folder.c_str());
   }
 
@@ -261,7 +261,7 @@ class Bench {
       for (const std::uint32_t i : observer.observed(view)) observed.items.push_back(i);
       observed.begin.push_back(static_cast<std::uint32_t>(observed.items.size()));
     }
-    return shared_pairs(result.views, observed, samples, missions::photos::min_shared_to_match,
+    return shared_pairs(result.views, observed, samples, missions::photo::min_shared_to_match,
                         options_.threads);
   }
 

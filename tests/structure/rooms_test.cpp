@@ -111,7 +111,6 @@ Modules architecture() {
   add_library({"support"}, {"geometry"}, {});
   add_library({"site_data/formats", "site_data"}, {"flight"}, {"support"});
   add_library({"scene"}, {"sim", "flight"}, {"site_data", "support"});
-  add_library({"photos"}, {"survey", "flight"}, {"support"});
   add_library({"session"}, {"survey", "flight"}, {"support"});
   add_library({"evaluation"}, {"sim", "survey", "flight"},
               {"scene", "session", "site_data", "support"});
@@ -123,14 +122,14 @@ Modules architecture() {
   add_library(
       {"config"}, {"sim", "survey", "flight"},
       {"online", "scan", "simulation", "evaluation", "session", "scene", "site_data", "support"});
-  add_library({"package/fleet", "package/replan", "package/verification", "package"},
-              {"sim", "survey", "flight"},
-              {"config", "photos", "scan", "simulation", "evaluation", "session", "scene",
-               "site_data", "support"});
-  add_library({"photo"}, {"sim", "survey", "flight"},
-              {"package", "photos", "config", "scan", "simulation", "evaluation", "session",
-               "scene", "site_data", "support"});
+  add_library(
+      {"package/fleet", "package/replan", "package/verification", "package"},
+      {"sim", "survey", "flight"},
+      {"config", "scan", "simulation", "evaluation", "session", "scene", "site_data", "support"});
   add_library({"wizard"}, {"flight"}, {"config", "site_data", "support"});
+  add_library({"photo"}, {"sim", "survey", "flight"},
+              {"package", "wizard", "config", "scan", "simulation", "evaluation", "session",
+               "scene", "site_data", "support"});
   add_library({"report"}, {"sim", "survey", "flight"},
               {"package", "config", "scan", "simulation", "evaluation", "session", "scene",
                "site_data", "support"});
@@ -141,8 +140,8 @@ Modules architecture() {
               {"package", "config", "scan", "simulation", "evaluation", "session", "scene",
                "site_data", "support"});
   add_library({"cli", "cli/clouds"}, {"sim", "survey", "flight"},
-              {"report", "batch", "photo", "wizard", "package", "photos", "config", "online",
-               "scan", "simulation", "evaluation", "session", "scene", "site_data", "support"});
+              {"report", "batch", "photo", "wizard", "package", "config", "online", "scan",
+               "simulation", "evaluation", "session", "scene", "site_data", "support"});
   // As a user of the library: public headers.
   add("python",
       {"sim/models", "sim/sensors", "survey", "flight/clearance", "flight/route", "missions/api"});

@@ -18,6 +18,9 @@ function incidence_of(cloud, index, scales) {
   return step === scales.no_incidence ? null : (step + 0.5) * scales.incidence_step_deg;
 }
 
+/// The value of a point in a map of a photo mission: 0 means none, 1 to 255 cover the range.
+const map_value = (map, step) => (step === 0 ? null : map.low + (step - 1) / 254 * (map.high - map.low));
+
 /// Points of a dark and a light end, as equal steps look equal (after matplotlib's viridis).
 const ramp_stops = [[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]];
 

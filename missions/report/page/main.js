@@ -13,7 +13,7 @@ async function load_library(name) {
 }
 
 const kinds = { survey: "Survey report", cloud: "Point cloud", mission: "Mission, before the survey",
-  scan: "Scan report", comparison: "Benchmark", trials: "Trials of a mission", district: "District report" };
+  scan: "Scan report", comparison: "Benchmark", trials: "Trials of a mission", photos: "Photo mission", district: "District report" };
 
 function facts_of(data) {
   const settings = value_at(data, "summary.settings") || {}, facts = [];
@@ -24,8 +24,8 @@ function facts_of(data) {
   }
   add(settings["flight.vehicle"] && settings["flight.vehicle"] !== "none" ? "vehicle " + settings["flight.vehicle"] : "no vehicle");
   const image = settings["sensor.width"] ? ", " + settings["sensor.width"] + " × " + settings["sensor.height"] + " pixels" : "";
-  add("sensor " + (settings["sensor.lidar"] || (settings["sensor.preset"] || "of the mission") + image));
-  add("planner " + (settings["planner.name"] || "–"));
+  add("sensor " + (settings["sensor.photo_camera"] || settings["sensor.lidar"] || (settings["sensor.preset"] || "of the mission") + image));
+  if (!settings["sensor.photo_camera"]) add("planner " + (settings["planner.name"] || "–"));
   return data.facts ? data.facts.map((text) => element("span", {}, text)) : facts;
 }
 
@@ -86,6 +86,7 @@ function sections_of(data, skycap) {
     return [...comparison_sections(data), files_section(data), how_section(how_compared)];
   }
   if (data.kind === "district") return district_sections(data);
+  if (data.kind === "photos") return photo_sections(data);
   if (data.kind === "scan") {
     return [scan_section(data), scan_charts(data), accuracy_section(data), files_section(data),
       settings_section(data), how_section(how_scanned)];

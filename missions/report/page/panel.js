@@ -1,6 +1,7 @@
 // The controls around the 3-D view, and what it says of a view, a point or a distance.
 
-const colour_modes = [["state", "coverage"], ["file", "file colours"], ["view", "view"], ["height", "height"],
+const colour_modes = [["quality", "reconstruction"], ["gsd", "ground sampling distance"],
+  ["observations", "photos of a point"], ["parallax", "parallax"], ["state", "coverage"], ["file", "file colours"], ["view", "view"], ["height", "height"],
   ["time", "time"], ["incidence", "incidence"], ["density", "density"]];
 
 class Panel {
@@ -24,8 +25,9 @@ class Panel {
 
   modes() {
     const cloud = this.viewer.main || {}, is_scan = this.data.kind === "scan";
-    const has = { state: cloud.state, file: cloud.colour, view: cloud.view && !is_scan, height: true,
-      time: cloud.view && is_scan, incidence: cloud.incidence, density: true };
+    const has = { quality: cloud.quality, gsd: cloud.gsd, observations: cloud.observations, parallax: cloud.parallax,
+      state: cloud.state, file: cloud.colour, view: cloud.view && !is_scan, height: true,
+      time: cloud.view && is_scan, incidence: cloud.incidence, density: this.data.kind !== "photos" };
     return colour_modes.filter(([name]) => has[name]);
   }
 
@@ -181,7 +183,8 @@ class Panel {
   }
 
   pyramid(number) {
-    const view = views_of(this.data)[number], depth = 2.2 * (this.viewer.layers.views.userData.depth || 1);
+    const view = views_of(this.data)[number], distance = value_at(this.data, "summary.photo.view_distance_m");
+    const depth = distance || 2.2 * (this.viewer.layers.views.userData.depth || 1);  // of a photo: its footprint
     return new THREE.LineSegments(line_geometry(frustum_lines(view, this.data.scene.sensor, depth)),
       new THREE.LineBasicMaterial({ color: 0xffffff }));
   }
@@ -196,6 +199,10 @@ class Panel {
       ["pitch", shown(Math.asin(Math.max(-1, Math.min(1, z))) * 180 / Math.PI, "degrees")]];
     if (this.data.pieces) {
       return [...rows, ["time", shown(view.time_s, "clock")], ["points shown", shown(view.points, "count")]];
+    }
+    if (this.data.kind === "photos") {
+      return [...rows, ["observed samples", figure(this.data, path + "observed_samples", "count")],
+        ["ground sampling distance", figure(this.data, path + "gsd_m", "millimetres")]];
     }
     rows.push(["returns", figure(this.data, path + "returns", "count")],
       ["new points", figure(this.data, path + "points_new", "count")],
@@ -224,6 +231,10 @@ class Panel {
   tell_point(point) {
     const { cloud, index } = point, rows = [["position", places_text(place_of(point))]];
     if (cloud.state) rows.push(["state", states[cloud.state[index]].name]);
+    if (cloud.quality) rows.push(["reconstruction", photo_classes[cloud.quality[index]].name]);
+    for (const [name, map] of Object.entries(this.data.maps || {})) {
+      if (cloud[name]) rows.push([map.title, shown(map_value(map, cloud[name][index]), map.form)]);
+    }
     if (cloud.view) rows.push([this.data.piece || "measured from view", String(cloud.view[index])]);
     const { scales } = this.data, incidence = incidence_of(cloud, index, scales), half = scales.incidence_step_deg / 2;
     if (incidence !== null) rows.push(["incidence", incidence - half + "° to " + (incidence + half) + "°"]);

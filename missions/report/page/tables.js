@@ -176,6 +176,7 @@ function fleet_parts(data) {
 
 /// The flight that measured, before the mission that is written.
 function surveyed_part(data) {
+  if (data.kind === "photos") return "";
   const frames = (data.summary.per_view || []).reduce((sum, view) => sum + (view.en_route_frames || 0), 0);
   return element("p", {}, "The survey flew ", figure(data, "flight.survey.length_m", "metres"), " in ",
     figure(data, "flight.survey.duration_s", "minutes"), ", from take-off to the last view" +

@@ -342,6 +342,16 @@ function painter_of(mode, cloud, legend, data) {
       [...ramp_stops].reverse());
     return (i) => (cloud.incidence[i] === data.scales.no_incidence ? unknown : paint(i));
   }
+  if (mode === "quality" && cloud.quality) {
+    legend.rows = photo_classes;
+    return (i) => photo_classes[cloud.quality[i]].colour;
+  }
+  if (data.maps && data.maps[mode] && cloud[mode]) {
+    const map = data.maps[mode], unknown = [110, 120, 128];
+    const paint = ramp(map.title, (i) => map_value(map, cloud[mode][i]), map.low, map.high, map.form,
+      mode === "gsd" ? [...ramp_stops].reverse() : ramp_stops);
+    return (i) => (cloud[mode][i] === 0 ? unknown : paint(i));
+  }
   if (mode === "density") {
     // The preview of a scan is a share of its points.
     const all = data.kind === "scan" ? Math.max(data.summary.points || 0, cloud.of) : cloud.of;

@@ -1,5 +1,6 @@
 // init, presets, completion and --version.
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -7,12 +8,15 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "missions/config/mission_document.h"
+#include "missions/config/photo_camera_reader.h"
 #include "missions/config/resolve.h"
 #include "missions/config/sensor_reader.h"
 #include "missions/config/vehicle_reader.h"
 #include "missions/support/external_program.h"
 #include "missions/version.h"
 #include "tests/missions/run_skycap.h"
+#include "tests/missions/site_data/cube_files.h"
 
 namespace skycap::missions {
 namespace {
@@ -84,6 +88,27 @@ TEST(Init, RejectsOverwritingAndUnknownNames) {
   EXPECT_FALSE(std::filesystem::exists(folder / "new.yaml"));
 }
 
+TEST(Init, WritesPhotoMissionForAMesh) {
+  const tests::TestFolder folder;
+  const std::string mesh = folder / "house.obj", mission = folder / "photos.yaml";
+  std::ofstream(mesh) << testing_support::make_obj({.low = {-5, -5, 0}});
+  const auto made = run_skycap({"init", mesh, "--sensor", "mavic_3e_wide", "--gsd", "0.005",
+                                "--vehicle", "mavic_3e", "--out", mission});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const config::MissionSetup setup = config::read_mission(mission);
+  EXPECT_TRUE(setup.document->is_photo());
+  EXPECT_EQ(setup.text("photo.gsd"), "0.005");
+  EXPECT_EQ(setup.text("flight.free_space"), "assumed");
+  EXPECT_NEAR(setup.survey().planner.view_distance, 18.8, 0.1);
+  EXPECT_THAT(run_skycap({"init", "builtin:teapot", "--sensor", "mavic_3e_wide", "--gsd", "0.005",
+                          "--out", folder / "new.yaml"})
+                  .err,
+              HasSubstr("photos require a mesh file"));
+  EXPECT_THAT(
+      run_skycap({"init", mesh, "--sensor", "mavic_3e_wide", "--out", folder / "new.yaml"}).err,
+      HasSubstr("set --gsd"));
+}
+
 TEST(Presets, ListsVehiclesAndSensorsWithPlausibleValues) {
   const auto json = nlohmann::json::parse(run_skycap({"presets", "--json"}).out);
   EXPECT_EQ(json["vehicles"].size(), config::vehicle_presets().size());
@@ -96,6 +121,12 @@ TEST(Presets, ListsVehiclesAndSensorsWithPlausibleValues) {
   for (const std::string_view name : config::vehicle_presets()) {
     EXPECT_THAT(text, HasSubstr("\n  " + std::string(name) + " "));
   }
+  const auto& cameras = json["photo_cameras"];
+  EXPECT_EQ(cameras.size(), config::photo_camera_presets().size());
+  for (const auto& camera : cameras) EXPECT_GT(camera["min_interval_s"], 0.1) << camera;
+  EXPECT_THAT(text,
+              HasSubstr("\n  mavic_3e_wide           17.3 x 13 mm   5280 x 3956 px  12.29 mm   "
+                        "2.67 mm    0.7 s  mechanical\n"));
   EXPECT_THAT(text,
               HasSubstr("intel_d435           depth camera   0.168 to 10    m  848 x 480 px"));
 }

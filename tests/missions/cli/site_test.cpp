@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "geometry/pose/prism.h"
+#include "missions/config/mission_document.h"
 #include "missions/config/resolve.h"
 #include "missions/config/vehicle_reader.h"
 #include "missions/evaluation/survey_scene.h"
@@ -296,6 +297,61 @@ TEST_F(Site, KeepsEveryVehicleFarEnoughAway) {
     ASSERT_EQ(run.exit_code, 0) << vehicle << ": " << run.err;
     EXPECT_GE(mission().flight().budget().margin, 0.5 - 1e-9) << vehicle;
   }
+}
+
+// The second command makes the photo table and the verified route.
+TEST_F(Site, PlansPhotosInTwoCommands) {
+  const auto site = propose("--id DEBY_1 --sensor mavic_3e_wide --gsd 0.01");
+  ASSERT_EQ(site.exit_code, 0) << site.err;
+  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "house.html"));
+  const config::MissionSetup proposed = mission();
+  EXPECT_TRUE(proposed.document->is_photo());
+  EXPECT_EQ(proposed.text("flight.vehicle"), "mavic_3e");
+  EXPECT_EQ(proposed.text("photo.pass"), "final");
+  EXPECT_EQ(proposed.text("photo.poses"), "unknown");  // no RTK
+  EXPECT_EQ(proposed.scene().priors->priors[1].objects.size(), 3U);
+  // No view is within 54 m of the pad, where DJI vehicles return at their own height.
+  const AlignedBox3d target = proposed.scene().priors->priors[0].box;
+  const Vector3d pad = proposed.flight().takeoff.value();
+  EXPECT_GT(target.exteriorDistance(pad), proposed.survey().planner.view_distance + 54.0);
+  const auto check = run_skycap("check " + path_ + "/house.yaml");
+  EXPECT_EQ(check.exit_code, 0) << check.out << check.err;
+  const auto plan = run_skycap("plan " + path_ + "/house.yaml --out " + path_ +
+                               "/out --set photo.patterns=[dome]");
+  ASSERT_EQ(plan.exit_code, 0) << plan.err << plan.out;
+  const json summary = json::parse(read_content(folder_.path() / "out" / "summary.json"));
+  EXPECT_GT(summary.at("photo").at("photos").get<int>(), 10);
+  EXPECT_EQ(summary.at("flight").at("route").at("skipped_views").size(), 0U);
+  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "out" / "mission.kmz"));
+  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "out" / "photos.csv"));
+  EXPECT_THAT(read_content(folder_.path() / "out" / "report.html"),
+              HasSubstr("\"kind\":\"photos\""));
+}
+
+// An outline with a height: a coarse flight first.
+TEST_F(Site, ProposesTwoFlightsForAnOutline) {
+  write("map.geojson", make_geojson(Cube()));
+  const auto run = run_skycap("site " + path_ +
+                              "/map.geojson --height 12 --base ground --sensor zenmuse_p1_35 --gsd "
+                              "0.004 --out " +
+                              path_ + "/house.yaml");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(mission().text("photo.pass"), "coarse");
+  EXPECT_EQ(mission().text("flight.vehicle"), "m350_rtk");
+  EXPECT_EQ(mission().text("photo.poses"), "known");
+  EXPECT_THAT(read_content(folder_.path() / "house.yaml"), HasSubstr("# First of two flights"));
+}
+
+TEST_F(Site, RejectsPhotoCamerasWithoutSamplingDistance) {
+  EXPECT_THAT(propose("--id DEBY_1 --sensor mavic_3e_wide").err,
+              HasSubstr("--sensor mavic_3e_wide is a photo camera and requires a ground sampling "
+                        "distance; set --gsd"));
+  EXPECT_THAT(propose("--id DEBY_1 --gsd 0.005").err, HasSubstr("--gsd requires a photo camera"));
+  EXPECT_THAT(propose("--id DEBY_1 --gsd 0.005 --sensor intel_d435").err,
+              HasSubstr("unknown photo camera intel_d435; expected one of: air_3_wide"));
+  EXPECT_THAT(propose("--id DEBY_1 --gsd 0.0005 --sensor mavic_3e_wide").err,
+              HasSubstr("requires a view distance of 1.88 m, less than the stand-off"));
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "house.yaml"));
 }
 
 TEST_F(Site, TakesTheSensorOfTheUser) {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/missions/photos/test_plan.h"
+#include "tests/missions/photo/test_plan.h"
 
 namespace skycap::missions::config {
 namespace {
@@ -21,7 +21,7 @@ TEST(WpmlPayload, IsThatOfTheCamera) {
 }
 
 TEST(PhotoShutter, FollowsFromTheDataSheet) {
-  geometry::PhotoCameraConfig camera = photos::mavic_3e();
+  geometry::PhotoCameraConfig camera = photo::mavic_3e();
   const flight::PhotoShutter shutter = make_photo_shutter(camera, 0.005);
   EXPECT_EQ(shutter.gsd, 0.005);
   EXPECT_EQ(shutter.exposure, 0.001);

@@ -2,6 +2,8 @@
 // scene model.
 #include "missions/photo/photo_mission.h"
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -12,13 +14,17 @@
 #include <nlohmann/json.hpp>
 
 #include "geometry/error.h"
+#include "geometry/io/file.h"
 #include "geometry/io/output_folder.h"
 #include "missions/config/mission_document.h"
 #include "missions/config/photo_camera_reader.h"
 #include "missions/config/photo_rules.h"
 #include "missions/config/resolve.h"
 #include "missions/package/package.h"
-#include "missions/photo/photo_files.h"
+#include "missions/photo/photo_results.h"
+#include "missions/photo/surface_map.h"
+#include "missions/photo/takeoff_point.h"
+#include "missions/report/photo_page.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skycap::missions {
@@ -50,8 +56,7 @@ photo: {gsd: 0.0026, patterns: [dome]}
 prior: [{file: house.obj, role: target, uncertainty: 0.1}]
 limits: {stand_off: 3}
 site: {latitude_deg: 51.75, longitude_deg: -1.25, geoid_undulation: 47}
-flight: {vehicle: mavic_3e, free_space: assumed, position_error: 0.1, clearance: 2,
-         takeoff: [-75, 0, 0]}
+flight: {vehicle: mavic_3e, free_space: assumed, position_error: 0.1, clearance: 2}
 )";
 
 class PhotoMissionTest : public testing::Test {
@@ -155,6 +160,10 @@ TEST_F(PhotoMissionTest, MakesAVerifiedFlightWithItsFiles) {
   EXPECT_EQ(mission.plan.photos.size(), mission.result.views.size());
   EXPECT_TRUE(route.unreached.empty());
   EXPECT_GE(route.min_clearance, setup.flight().budget().total());
+  // DJI vehicles climb before they return only farther than 50 m from the pad.
+  for (const flight::CapturePoint& point : route.capture_points) {
+    EXPECT_GT((point.view.position - mission.pad).head<2>().norm(), 54.0);
+  }
   EXPECT_GE(mission.result.figures.attainable_share(mission.result.figures.satisfied), 0.95);
   ASSERT_FALSE(mission.warnings.empty());
   EXPECT_THAT(mission.warnings.front(),
@@ -166,13 +175,20 @@ TEST_F(PhotoMissionTest, MakesAVerifiedFlightWithItsFiles) {
     EXPECT_GT(photo.gsd, 0.0);
   }
 
+  // One point in front of the southern wall, and one under the floor.
+  write("points.csv", "name,x,y,z\nA,0,-3.5,0.1\nB,0,0,-0.5\n");
+  photo::add_control_points(setup, airspace, folder_.path() / "points.csv", mission);
+  ASSERT_EQ(mission.control_points.size(), 2U);
+  EXPECT_THAT(mission.warnings.back(), HasSubstr("control point \"B\" is visible in 0 photos"));
+
   const std::filesystem::path out = folder_.path() / "out";
   {
     geometry::OutputFolder folder(out);
     photo::stage_photo_mission(setup, airspace, mission, folder);
     folder.commit();
   }
-  for (const char* name : {"mission.kmz", "mission.kml", "mission.csv", "photos.csv"}) {
+  for (const char* name : {"mission.kmz", "mission.kml", "mission.csv", "photos.csv",
+                           "photo_surface.csv", "control_points.csv", "field_sheet.html"}) {
     EXPECT_TRUE(std::filesystem::exists(out / name)) << name;
   }
   std::ifstream file(out / "summary.json");
@@ -180,6 +196,40 @@ TEST_F(PhotoMissionTest, MakesAVerifiedFlightWithItsFiles) {
   EXPECT_EQ(summary["photo"]["photos"], mission.plan.photos.size());
   EXPECT_EQ(summary["photo"]["curve"].size(), mission.result.views.size());
   EXPECT_EQ(summary["photo"]["patterns"][0]["pattern"], "dome");
+  const auto& curve = summary["photo"]["time_curve"];
+  ASSERT_EQ(curve.size(), 12U);
+  EXPECT_EQ(curve[11]["photos"], mission.result.views.size());
+  for (std::size_t i = 1; i < curve.size(); ++i) {
+    EXPECT_GT(curve[i]["tour_s"], curve[i - 1]["tour_s"]);
+    EXPECT_GE(curve[i]["expected_completeness"], curve[i - 1]["expected_completeness"]);
+  }
+  const std::string sheet = geometry::read_file(out / "field_sheet.html");
+  EXPECT_THAT(sheet, HasSubstr("Focus: 9.8 m"));
+  EXPECT_THAT(sheet, HasSubstr("<li>A, "));
+  EXPECT_THAT(sheet, HasSubstr("<li>B, 0 photos</li>"));
+  EXPECT_THAT(sheet, HasSubstr("the airspace around the model is assumed free"));
+
+  // The map has the same classes as the figures of the plan, at other samples.
+  const std::vector<photo::SurfaceSample> map =
+      photo::evaluate_surface(setup, airspace, mission.plan);
+  ASSERT_GT(map.size(), 4000U);
+  const auto good =
+      std::ranges::count(map, photo::SurfaceClass::good, &photo::SurfaceSample::quality);
+  const double all = static_cast<double>(map.size());
+  EXPECT_NEAR(static_cast<double>(good) / all,
+              mission.result.figures.share(mission.result.figures.good), 0.02);
+  for (const photo::SurfaceSample& sample : map) {
+    EXPECT_EQ(sample.observations == 0, sample.partners == -2);
+    if (sample.observations > 0) EXPECT_GT(sample.gsd, 0.5 * mission.plan.gsd);
+  }
+
+  const std::string page = report::photo_page(report::results_in(out), 100'000);
+  EXPECT_THAT(page, HasSubstr("\"kind\":\"photos\""));
+  EXPECT_THAT(page, HasSubstr("\"observations\""));
+  write("out/photo_surface.csv",
+        "x,y,z,class,partners,observations,gsd_m,parallax_deg,incidence_deg\n"
+        "1,2,3,bad,0,0,,,\n");
+  EXPECT_THROW(report::photo_page(report::results_in(out), 100), Error);
 
   // The package is read in the same way as by skycap export.
   const package::PackagedSurvey packaged = package::read_package(out, {});
@@ -188,6 +238,20 @@ TEST_F(PhotoMissionTest, MakesAVerifiedFlightWithItsFiles) {
                                                    packaged.views, packaged.paths);
   EXPECT_EQ(again.capture_points.size(), route.capture_points.size());
   EXPECT_DOUBLE_EQ(again.length, route.length);
+}
+
+TEST_F(PhotoMissionTest, ChoosesATakeoffPointInsideTheGeofence) {
+  const char* fence = "site: {geofence: [[-120, -40], [40, -40], [40, 40], [-120, 40]], ";
+  const config::MissionSetup setup = read(with(mission_yaml, "site: {", fence));
+  const std::vector<geometry::View> views{{{20, 0, 4}, {-1, 0, 0}}, {{-20, 0, 4}, {1, 0, 0}}};
+  const Eigen::Vector3d pad = photo::choose_takeoff(setup.flight(), views);
+  EXPECT_LT(pad.x(), -74.0);
+  EXPECT_GT(pad.x(), -120.0 + setup.flight().clearance);
+  EXPECT_LT(std::abs(pad.y()), 40.0 - setup.flight().clearance);
+  // The mission's own pad has priority.
+  const config::MissionSetup own =
+      read(with(mission_yaml, "clearance: 2}", "clearance: 2, takeoff: [30, 1, 0]}"));
+  EXPECT_EQ(photo::choose_takeoff(own.flight(), views), Eigen::Vector3d(30, 1, 0));
 }
 
 TEST_F(PhotoMissionTest, StaysOutsideOfTheUnknownBoxWhenSpaceIsMeasured) {

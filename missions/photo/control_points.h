@@ -12,12 +12,14 @@
 #include "flight/export/geodesy.h"
 #include "survey/photo/photo_plan.h"
 
-namespace skycap::missions::photos {
+namespace skycap::missions::photo {
 
 struct ControlPoint {
   std::string name;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< Position in the mission frame [m].
 };
+
+inline constexpr const char* control_table_name = "control_points.csv";
 
 /// Minimum number of photos for a reliable measurement of a control point.
 inline constexpr std::size_t min_control_photos = 3;
@@ -53,9 +55,10 @@ std::vector<ControlObservation> find_observations(const ControlPoint& point,
 std::string control_table(const std::vector<ControlPoint>& points,
                           const survey::photo::PhotoPlan& plan, const Blocked& is_blocked);
 
-/// Returns a warning for each point that is visible in fewer than min_control_photos photos.
+/// Returns a warning, without the word "Warning", for each point that is visible in fewer than
+/// min_control_photos photos.
 std::vector<std::string> control_warnings(const std::vector<ControlPoint>& points,
                                           const survey::photo::PhotoPlan& plan,
                                           const Blocked& is_blocked);
 
-}  // namespace skycap::missions::photos
+}  // namespace skycap::missions::photo

@@ -1,11 +1,11 @@
-#include "missions/photos/photo_table.h"
+#include "missions/photo/photo_table.h"
 
 #include <map>
 
 #include "flight/export/text.h"
 #include "geometry/angle.h"
 
-namespace skycap::missions::photos {
+namespace skycap::missions::photo {
 namespace {
 
 using flight::fixed;
@@ -73,4 +73,10 @@ std::string odm_geolocations(const PhotoPlan& plan, const flight::Site& site,
   return text;
 }
 
-}  // namespace skycap::missions::photos
+void stage_photo_tables(const PhotoPlan& plan, const std::optional<flight::Site>& site,
+                        const PoseSigmas& sigmas, geometry::OutputFolder& folder) {
+  folder.write(photo_table_name, photo_table(plan, site, sigmas));
+  if (site) folder.write(odm_file_name, odm_geolocations(plan, *site, sigmas));
+}
+
+}  // namespace skycap::missions::photo

@@ -1,5 +1,5 @@
 // Tables of planned photos and angles of OpenDroneMap.
-#include "missions/photos/photo_table.h"
+#include "missions/photo/photo_table.h"
 
 #include <cmath>
 
@@ -8,9 +8,10 @@
 
 #include "flight/export/text.h"
 #include "geometry/angle.h"
-#include "tests/missions/photos/test_plan.h"
+#include "geometry/io/file.h"
+#include "tests/missions/photo/test_plan.h"
 
-namespace skycap::missions::photos {
+namespace skycap::missions::photo {
 namespace {
 
 using Eigen::Matrix3d;
@@ -125,5 +126,17 @@ TEST(OdmGeolocations, BeginWithTheirSystemAndHaveNineFields) {
   EXPECT_EQ(fields[5], "0.0000");
 }
 
+TEST(PhotoTable, IsStagedWithTheOdmFile) {
+  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "photo_table_test";
+  {
+    geometry::OutputFolder folder(path);
+    stage_photo_tables(test_plan(), flight::Site{{51.75, -1.25, 111.5}, {}}, {}, folder);
+    folder.commit();
+  }
+  EXPECT_THAT(geometry::read_file(path / "photos.csv"), testing::StartsWith("name,event,time_s,"));
+  EXPECT_THAT(geometry::read_file(path / "geo.txt"), testing::StartsWith("EPSG:4326\n"));
+  std::filesystem::remove_all(path);
+}
+
 }  // namespace
-}  // namespace skycap::missions::photos
+}  // namespace skycap::missions::photo

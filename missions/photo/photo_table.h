@@ -7,9 +7,13 @@
 #include <Eigen/Core>
 
 #include "flight/export/geodesy.h"
+#include "geometry/io/output_folder.h"
 #include "survey/photo/photo_plan.h"
 
-namespace skycap::missions::photos {
+namespace skycap::missions::photo {
+
+inline constexpr const char* photo_table_name = "photos.csv";
+inline constexpr const char* odm_file_name = "geo.txt";
 
 /// Standard deviations of the photo poses achieved by a vehicle.
 struct PoseSigmas {
@@ -43,4 +47,9 @@ OdmAngles odm_angles(const survey::photo::PlannedPhoto& photo);
 std::string odm_geolocations(const survey::photo::PhotoPlan& plan, const flight::Site& site,
                              const PoseSigmas& sigmas = {});
 
-}  // namespace skycap::missions::photos
+/// Stages photos.csv, and geo.txt if the mission has a site.
+void stage_photo_tables(const survey::photo::PhotoPlan& plan,
+                        const std::optional<flight::Site>& site, const PoseSigmas& sigmas,
+                        geometry::OutputFolder& folder);
+
+}  // namespace skycap::missions::photo

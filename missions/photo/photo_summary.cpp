@@ -1,4 +1,4 @@
-#include "missions/photo/photo_report.h"
+#include "missions/photo/photo_summary.h"
 
 #include <fmt/format.h>
 
@@ -11,24 +11,6 @@ using survey::photo::MissingReason;
 using survey::photo::PhotoFigures;
 using survey::photo::PhotoPlanResult;
 
-std::string split_words(MissingReason reason) {
-  switch (reason) {
-    case MissingReason::occluded:
-      return "occluded from most free positions";
-    case MissingReason::min_standoff:
-      return "too close to obstacles or outside the airspace";
-    case MissingReason::incidence:
-      return "seen only above the maximum incidence";
-    case MissingReason::gimbal:
-      return "outside the gimbal's range";
-    case MissingReason::height:
-      return "seen only from below the minimum height";
-    case MissingReason::not_taken:
-      return "attainable, but requires too many photos for its area";
-  }
-  return "";
-}
-
 std::string percent(double share) { return fmt::format("{:.1f}%", 100.0 * share); }
 
 std::string missing_text(const PhotoPlanResult& result) {
@@ -36,9 +18,9 @@ std::string missing_text(const PhotoPlanResult& result) {
   for (std::size_t i = 0; i < survey::photo::missing_reasons; ++i) {
     const double area = result.missing_area[i];
     if (area <= 0.0) continue;
-    text += fmt::format("  missing   {:.1f} m^2 ({} of the exposed surface): {}\n", area,
-                        percent(area / result.exposed_area),
-                        split_words(static_cast<MissingReason>(i)));
+    text +=
+        fmt::format("  missing   {:.1f} m^2 ({} of the exposed surface): {}\n", area,
+                    percent(area / result.exposed_area), describe(static_cast<MissingReason>(i)));
   }
   return text;
 }
@@ -63,6 +45,24 @@ std::string patterns_text(const PhotoMission& mission) {
 }
 
 }  // namespace
+
+std::string describe(MissingReason reason) {
+  switch (reason) {
+    case MissingReason::occluded:
+      return "occluded from most free positions";
+    case MissingReason::min_standoff:
+      return "too close to obstacles or outside the airspace";
+    case MissingReason::incidence:
+      return "seen only above the maximum incidence";
+    case MissingReason::gimbal:
+      return "outside the gimbal's range";
+    case MissingReason::height:
+      return "seen only from below the minimum height";
+    case MissingReason::not_taken:
+      return "attainable, but requires too many photos for its area";
+  }
+  return "";
+}
 
 std::string plan_text(const config::MissionSetup& setup, const PhotoMission& mission) {
   const PhotoPlanResult& result = mission.result;

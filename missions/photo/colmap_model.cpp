@@ -1,4 +1,4 @@
-#include "missions/photos/colmap_model.h"
+#include "missions/photo/colmap_model.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "flight/export/text.h"
 #include "geometry/io/output_folder.h"
 
-namespace skycap::missions::photos {
+namespace skycap::missions::photo {
 namespace {
 
 using flight::fixed;
@@ -159,4 +159,4 @@ void write_colmap(const PhotoPlan& plan, std::span<const survey::photo::PhotoPai
   output.commit();
 }
 
-}  // namespace skycap::missions::photos
+}  // namespace skycap::missions::photo

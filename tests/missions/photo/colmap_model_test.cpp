@@ -1,5 +1,5 @@
 // Files for COLMAP: projections with the written model equal those of the camera.
-#include "missions/photos/colmap_model.h"
+#include "missions/photo/colmap_model.h"
 
 #include <cstdlib>
 #include <filesystem>
@@ -11,9 +11,9 @@
 #include "flight/export/text.h"
 #include "geometry/io/file.h"
 #include "geometry/pose/brown_distortion.h"
-#include "tests/missions/photos/test_plan.h"
+#include "tests/missions/photo/test_plan.h"
 
-namespace skycap::missions::photos {
+namespace skycap::missions::photo {
 namespace {
 
 using Eigen::Vector2d;
@@ -143,4 +143,4 @@ TEST(ColmapModel, IsReadByColmap) {
 }
 
 }  // namespace
-}  // namespace skycap::missions::photos
+}  // namespace skycap::missions::photo

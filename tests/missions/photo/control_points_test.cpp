@@ -1,13 +1,13 @@
-#include "missions/photos/control_points.h"
+#include "missions/photo/control_points.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "geometry/pose/brown_distortion.h"
-#include "tests/missions/photos/test_plan.h"
+#include "tests/missions/photo/test_plan.h"
 #include "tests/support/complaint.h"
 
-namespace skycap::missions::photos {
+namespace skycap::missions::photo {
 namespace {
 
 using Eigen::Vector2d;
@@ -94,4 +94,4 @@ TEST(ControlPoints, AreMovedByTheLens) {
 }
 
 }  // namespace
-}  // namespace skycap::missions::photos
+}  // namespace skycap::missions::photo

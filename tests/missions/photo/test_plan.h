@@ -4,7 +4,7 @@
 #include "flight/route/route.h"
 #include "survey/photo/photo_plan.h"
 
-namespace skycap::missions::photos {
+namespace skycap::missions::photo {
 
 inline geometry::PhotoCameraConfig mavic_3e() {
   geometry::PhotoCameraConfig camera;
@@ -45,4 +45,4 @@ inline survey::photo::PhotoPlan test_plan() {
   return plan;
 }
 
-}  // namespace skycap::missions::photos
+}  // namespace skycap::missions::photo

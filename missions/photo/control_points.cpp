@@ -1,4 +1,4 @@
-#include "missions/photos/control_points.h"
+#include "missions/photo/control_points.h"
 
 #include <algorithm>
 #include <set>
@@ -7,9 +7,9 @@
 #include "geometry/error.h"
 #include "geometry/pose/brown_distortion.h"
 #include "geometry/text_parts.h"
-#include "missions/photos/photo_table.h"
+#include "missions/photo/photo_table.h"
 
-namespace skycap::missions::photos {
+namespace skycap::missions::photo {
 namespace {
 
 using flight::fixed;
@@ -114,12 +114,12 @@ std::vector<std::string> control_warnings(const std::vector<ControlPoint>& point
   for (const ControlPoint& point : points) {
     const std::size_t photos = find_observations(point, plan, is_blocked).size();
     if (photos >= min_control_photos) continue;
-    warnings.push_back("Warning: control point \"" + point.name + "\" is visible in " +
+    warnings.push_back("control point \"" + point.name + "\" is visible in " +
                        std::to_string(photos) + " photos; at least " +
                        std::to_string(min_control_photos) +
-                       " are required. Move it to an area where photos overlap.");
+                       " are required. Move it to an area where photos overlap");
   }
   return warnings;
 }
 
-}  // namespace skycap::missions::photos
+}  // namespace skycap::missions::photo

@@ -12,11 +12,11 @@
 #include <string>
 
 #include "geometry/angle.h"
-#include "missions/photos/photo_table.h"
+#include "missions/photo/photo_table.h"
 #include "survey/photo/photo_plan.h"
 #include "survey/photo/view_graph.h"
 
-namespace skycap::missions::photos {
+namespace skycap::missions::photo {
 
 /// Minimum fraction of the smaller photo's samples that a pair must share to be matched, and
 /// maximum mean parallax of a pair [rad]. Other pairs take most of the matching time and seldom
@@ -58,4 +58,4 @@ void write_colmap(const survey::photo::PhotoPlan& plan,
                   std::span<const survey::photo::PhotoPair> pairs, const PoseSigmas& sigmas,
                   const std::filesystem::path& folder, const std::string& extension = ".jpg");
 
-}  // namespace skycap::missions::photos
+}  // namespace skycap::missions::photo

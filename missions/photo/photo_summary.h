@@ -12,6 +12,9 @@ namespace skycap::missions::photo {
 /// The flight is not included.
 std::string plan_text(const config::MissionSetup& setup, const PhotoMission& mission);
 
+/// Returns the words for users of a reason, such as "outside the gimbal's range".
+std::string describe(survey::photo::MissingReason reason);
+
 /// Returns a line "Warning: ..." for each warning.
 std::string warnings_text(const PhotoMission& mission);
 

@@ -1,0 +1,21 @@
+#include "missions/photo/takeoff_point.h"
+
+#include <Eigen/Geometry>
+
+#include "missions/wizard/pad_search.h"
+
+namespace skycap::missions::photo {
+
+Eigen::Vector3d choose_takeoff(const flight::FlightOptions& options,
+                               std::span<const geometry::View> views) {
+  if (options.takeoff) return *options.takeoff;
+  Eigen::AlignedBox3d box = options.unknown_box;
+  for (const Eigen::AlignedBox3d& other : options.extra_unknown_boxes) box.extend(other);
+  for (const geometry::View& view : views) box.extend(view.position);
+  constexpr double view_reach = 0.0;  // The box contains the views.
+  const wizard::PadSearch search(options, {}, wizard::PadFence::keep);
+  return search.find_pad_beside(box, box.max().z(), view_reach)
+      .value_or(options.pad(views.front().position));
+}
+
+}  // namespace skycap::missions::photo
