@@ -65,17 +65,22 @@ std::string boxes_obj(Draw& draw) {
 std::string mission_text(Draw& draw) {
   const std::string camera(draw.pick(config::photo_camera_presets()));
   const std::string vehicle(draw.pick(config::vehicle_presets()));
+  const double gsd = draw.between(0.0008, 0.006);
+  const char* patterns = draw.below(2) == 0 ? "[]" : "[dome]";
+  const auto max_photos = 4 + draw.below(20);
+  const auto min_partners = 2 + draw.below(3);
   std::string text = fmt::format(
       "sensor: {{photo_camera: {}}}\n"
       "photo:\n  gsd: {:.5f}\n  patterns: {}\n  max_photos: {}\n  min_partners: {}\n",
-      camera, draw.between(0.0008, 0.006), draw.below(2) == 0 ? "[]" : "[dome]", 4 + draw.below(20),
-      2 + draw.below(3));
+      camera, gsd, patterns, max_photos, min_partners);
   if (draw.below(3) == 0) text += "  poses: unknown\n";
   text += "prior: [{file: boxes.obj, role: target, uncertainty: 0.1}]\n";
   text += fmt::format("limits:\n  stand_off: {:.2f}\n", draw.between(0.5, 5));
+  const double clearance = draw.between(1, 4);
+  const char* free_space = draw.below(4) == 0 ? "measured" : "assumed";
   text += fmt::format(
       "flight:\n  vehicle: {}\n  clearance: {:.2f}\n  position_error: 0.1\n  free_space: {}\n",
-      vehicle, draw.between(1, 4), draw.below(4) == 0 ? "measured" : "assumed");
+      vehicle, clearance, free_space);
   if (draw.below(4) == 0)
     text += fmt::format("site: {{max_height: {:.1f}}}\n", draw.between(5, 60));
   return text;
