@@ -168,11 +168,6 @@ class Planner {
             site_.min_height};
   }
 
-  static std::string too_large(Pattern pattern) {
-    return std::string("the pattern ") + to_string(pattern) + " has more than " +
-           std::to_string(PatternOptions().max_photos) + " photos";
-  }
-
   PatternPhotos make_photos(Pattern pattern) const {
     return pattern_photos(pattern, camera_, site_.target, pattern_options(), site_.space);
   }
@@ -184,7 +179,9 @@ class Planner {
       PatternPhotos photos = make_photos(*options_.flown_pattern);
       if (photos.is_too_large) {
         throw Error(ErrorKind::bad_config,
-                    too_large(*options_.flown_pattern) + "; raise photo.gsd or divide the target");
+                    "the pattern " + std::string(to_string(*options_.flown_pattern)) +
+                        " has more than " + std::to_string(pattern_options().max_photos) +
+                        " photos; raise photo.gsd or divide the target");
       }
       candidates = std::move(photos.views);
     } else {
@@ -463,7 +460,10 @@ class Planner {
       report(std::string("evaluating the pattern ") + to_string(pattern));
       PatternPhotos photos = make_photos(pattern);
       if (photos.is_too_large) {
-        result_.warnings.push_back(too_large(pattern) + " and is not compared");
+        result_.warnings.push_back("the pattern " + std::string(to_string(pattern)) +
+                                   " has more than " +
+                                   std::to_string(pattern_options().max_photos) +
+                                   " photos and is not compared with the plan");
         continue;
       }
       PatternResult result;
