@@ -221,7 +221,7 @@ TEST_F(PhotoMissionTest, MakesAVerifiedFlightWithItsFiles) {
   for (const photo::SurfaceSample& sample : map) {
     EXPECT_EQ(sample.observations == 0, sample.partners == -2);
     if (sample.observations == 0) continue;
-    EXPECT_GT(sample.gsd, 0.5 * mission.plan.gsd);
+    EXPECT_GE(sample.gsd, 0.3 * mission.plan.gsd);  // stand-off: 3 m of 9.75 m
   }
 
   const std::string page = report::photo_page(report::results_in(out), 100'000);
