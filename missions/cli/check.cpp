@@ -259,6 +259,12 @@ int check(const CheckOptions& options, const Console& console) {
     return 0;
   }
   const config::MissionSetup setup = read_shown(config::read_live_mission, options, console);
+  if (setup.document->is_photo()) {
+    if (!options.route) return check_photos(options, setup, console);
+    const geometry::Mesh targets =
+        site_data::make_surfaces(*setup.scene().priors, site_data::Role::target);
+    return check_route_file(options, setup.flight(), targets, console);
+  }
   if (setup.is_live()) {
     if (options.route) {
       throw Error(ErrorKind::bad_usage, options.mission.string() +
@@ -269,12 +275,6 @@ int check(const CheckOptions& options, const Console& console) {
   }
   if (options.route && options.route->filename() == package::timetable_name) {
     return check_timetable(options, setup.flight(), console);
-  }
-  if (setup.document->is_photo()) {
-    if (!options.route) return check_photos(options, setup, console);
-    const geometry::Mesh targets =
-        site_data::make_surfaces(*setup.scene().priors, site_data::Role::target);
-    return check_route_file(options, setup.flight(), targets, console);
   }
   ProgressLine progress(console, false);
   progress.show(setup.name + ": loading scene");

@@ -14,6 +14,7 @@
 #include "missions/cli/commands.h"
 #include "missions/cli/live_scene.h"
 #include "missions/cli/write_page.h"
+#include "missions/config/mission_document.h"
 #include "missions/config/resolve.h"
 #include "missions/online/guided/fly_survey.h"
 #include "missions/online/guided/network_port.h"
@@ -36,6 +37,17 @@ int to_exit_code(const online::Proposal& proposal) {
   if (proposal.has_pose_warning()) return exit_wrong_pose;
   if (!proposal.end) return 0;
   return *proposal.end == survey::StopReason::nowhere_to_go ? exit_nowhere_to_go : exit_complete;
+}
+
+/// Reads a mission for a command of live surveys. Throws Error{bad_config} for photo missions.
+template <typename Options>
+config::MissionSetup read_live(const Options& options, const Console& console) {
+  config::MissionSetup setup = read_shown(config::read_live_mission, options, console);
+  if (setup.document->is_photo()) {
+    setup.document->reject("sensor.photo_camera",
+                           "photos are planned before the flight, not live; use skycap plan");
+  }
+  return setup;
 }
 
 Eigen::Isometry3d make_pose(const NextOptions& options) {
@@ -272,7 +284,7 @@ int next(const NextOptions& options, const Console& console) {
   if (options.is_en_route && !options.scan) {
     throw Error(ErrorKind::bad_usage, "--en-route requires --scan");
   }
-  const config::MissionSetup setup = read_shown(config::read_live_mission, options, console);
+  const config::MissionSetup setup = read_live(options, console);
   const auto survey = open_survey(setup, options.mission.parent_path(), options.survey);
   if (options.scan) {
     const online::ScanInput input = make_scan_input(options, *options.scan, make_pose(options));
@@ -291,7 +303,7 @@ int next(const NextOptions& options, const Console& console) {
 }
 
 int finish(const LiveOptions& options, const Console& console) {
-  const config::MissionSetup setup = read_shown(config::read_live_mission, options, console);
+  const config::MissionSetup setup = read_live(options, console);
   const auto survey = open_survey(setup, options.mission.parent_path(), options.survey);
   if (survey->views().empty()) {
     throw Error(
@@ -307,7 +319,7 @@ int serve(const ServeOptions& options, const Console& console) {
   if (options.socket.has_value() == options.port.has_value()) {
     throw Error(ErrorKind::bad_usage, "serve requires either --socket PATH or --port NUMBER");
   }
-  const config::MissionSetup setup = read_shown(config::read_live_mission, options, console);
+  const config::MissionSetup setup = read_live(options, console);
   const auto survey = open_survey(setup, options.mission.parent_path(), options.survey);
   int exit_code = 1;
   const auto finish_survey = [&] {
@@ -357,7 +369,7 @@ online::Sensor make_sensor(const FlyOptions& options,
 /// the package has a route.
 int fly_live(const FlyOptions& options, const Console& console) {
   const online::NetworkAddress address = online::parse_address(options.connect);
-  const config::MissionSetup setup = read_shown(config::read_live_mission, options, console);
+  const config::MissionSetup setup = read_live(options, console);
   online::require_flyable(setup.flight());
   online::Sensor sensor = make_sensor(options, setup.simulation, setup.live, setup.run, console);
   const auto survey = open_survey(setup, options.mission.parent_path(), options.survey);

@@ -515,11 +515,7 @@ MissionSetup read_mission(const std::filesystem::path& file,
 MissionSetup read_live_mission(const std::filesystem::path& file,
                                const std::vector<KeyOverride>& overrides, const Report& report) {
   MissionDocument document = read_mission_document(file, overrides);
-  if (document.is_photo()) {
-    document.reject("sensor.photo_camera",
-                    "photos are planned before the flight, not live; use skycap plan");
-  }
-  if (document.scene.model.empty()) check_live(document);
+  if (document.scene.model.empty() && !document.is_photo()) check_live(document);
   return resolve(std::move(document), report);
 }
 

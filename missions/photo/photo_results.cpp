@@ -188,9 +188,9 @@ Blocked make_sights(const config::MissionSetup& setup, const PhotoAirspace& airs
   geometry::Mesh all = site.target;
   append(all, site.surroundings);
   const auto sights = std::make_shared<const geometry::SightLines>(all, setup.run.threads);
-  return [sights](const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-    constexpr double whole = 1.0;
-    return !sights->is_clear(from, to, whole);
+  return [sights, ground = site.ground](const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+    constexpr double whole = 1.0, buried = 0.2;
+    return to.z() < ground(to.head<2>()) - buried || !sights->is_clear(from, to, whole);
   };
 }
 

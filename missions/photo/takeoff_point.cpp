@@ -14,8 +14,9 @@ Eigen::Vector3d choose_takeoff(const flight::FlightOptions& options,
   for (const geometry::View& view : views) box.extend(view.position);
   constexpr double view_reach = 0.0;  // The box contains the views.
   const wizard::PadSearch search(options, {}, wizard::PadFence::keep);
-  return search.find_pad_beside(box, box.max().z(), view_reach)
-      .value_or(options.pad(views.front().position));
+  const Eigen::Vector3d pad = search.find_pad_beside(box, box.max().z(), view_reach)
+                                  .value_or(options.pad(views.front().position));
+  return pad + Eigen::Vector3d::Zero();  // Without negative zeros, for messages.
 }
 
 }  // namespace skycap::missions::photo
