@@ -200,10 +200,11 @@ std::string expectation_text(const simulation::Expectation& expected) {
 }
 
 /// Prints whether a survey of the mission is possible, and its estimated effort.
+/// `begun` is the start of the command.
 int check_survey(const CheckOptions& options, const config::MissionSetup& setup,
-                 ProgressLine& progress, const Console& console) {
+                 std::chrono::steady_clock::time_point begun, ProgressLine& progress,
+                 const Console& console) {
   const std::string file = options.mission.string();
-  const auto begun = std::chrono::steady_clock::now();
   try {
     const evaluation::SurveyScene scene(setup.simulation, options.mission.parent_path(),
                                         setup.run.threads);
@@ -220,7 +221,7 @@ int check_survey(const CheckOptions& options, const config::MissionSetup& setup,
     if (!range.empty()) text += "  warning   " + range + "\n";
     if (found.problems.empty()) {
       progress.show(setup.name + ": searching for views");
-      // plan begins with the same steps as check.
+      // plan begins with the same steps as check, and reads the same files.
       const double loading =
           std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
       simulation::Expectation expected =
@@ -258,6 +259,7 @@ int check(const CheckOptions& options, const Console& console) {
     console.out << config::setup_text(read_shown(config::read_live_mission, options, console));
     return 0;
   }
+  const auto begun = std::chrono::steady_clock::now();
   const config::MissionSetup setup = read_shown(config::read_live_mission, options, console);
   if (setup.document->is_photo()) {
     if (!options.route) return check_photos(options, setup, console);
@@ -278,7 +280,7 @@ int check(const CheckOptions& options, const Console& console) {
   }
   ProgressLine progress(console, false);
   progress.show(setup.name + ": loading scene");
-  if (!options.route) return check_survey(options, setup, progress, console);
+  if (!options.route) return check_survey(options, setup, begun, progress, console);
   const geometry::Mesh model = load_scene_model(setup.scene(), options.mission);
   progress.clear();
   return check_route_file(options, setup.flight(), model, console);

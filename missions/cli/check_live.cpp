@@ -6,8 +6,10 @@
 
 #include "flight/route/route.h"
 #include "geometry/angle.h"
+#include "geometry/error.h"
 #include "missions/config/mission_document.h"
 #include "missions/session/initial_pattern_flight.h"
+#include "missions/session/survey_flight.h"
 #include "missions/site_data/prior_text.h"
 #include "survey/planners/planner_names.h"
 
@@ -95,6 +97,12 @@ class LiveCheck {
       problems_.emplace_back(
           "the first view violates the limits of height, pitch, geofence or no-fly volumes; "
           "correct start.position, its direction or the limits");
+    } else if (setup_.flight().has_vehicle()) {
+      try {  // The climb and the path to the first view are verified before any scan.
+        const session::SurveyFlight flight(setup_.flight(), *first_, setup_.run.threads);
+      } catch (const Error& error) {
+        problems_.emplace_back(error.what());
+      }
     }
   }
 

@@ -1,12 +1,14 @@
 // skycap init: creates a commented mission for a sensor, a vehicle and a target without a
 // georeference.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -78,7 +80,9 @@ AlignedBox3d make_target_box(const InitOptions& options) {
   return {-half, half + options.size[2] * Vector3d::UnitZ()};
 }
 
+/// Returns the maximum range in which the sensor is accurate [m].
 double max_range(const config::SensorDescription& sensor) {
+  if (sensor.useful_range) return sensor.useful_range->max;
   if (const auto* camera = std::get_if<sim::DepthCameraConfig>(&sensor.sensor)) {
     return camera->camera.max_range;
   }
@@ -96,11 +100,33 @@ double compute_default_clearance(const std::string& name) {
   return unit * std::ceil(min / unit);
 }
 
+/// Returns the half width [m] of the column above the take-off point in a room. The vehicle climbs
+/// in it before the first scan.
+double column_half_width(const Proposal& proposal) { return proposal.clearance + 0.5; }
+
+/// Returns the room without the column above the take-off point, in parts.
+std::vector<AlignedBox3d> around_column(const Proposal& proposal) {
+  const AlignedBox3d& room = proposal.target;
+  const double half = column_half_width(proposal);
+  const Vector3d low = room.min(), high = room.max();
+  const std::array parts{
+      AlignedBox3d(low, Vector3d(-half, high.y(), high.z())),
+      AlignedBox3d(Vector3d(half, low.y(), low.z()), high),
+      AlignedBox3d(Vector3d(-half, low.y(), low.z()), Vector3d(half, -half, high.z())),
+      AlignedBox3d(Vector3d(-half, half, low.z()), Vector3d(half, high.y(), high.z()))};
+  std::vector<AlignedBox3d> boxes;
+  for (const AlignedBox3d& part : parts) {
+    if ((part.sizes().array() > 0.0).all()) boxes.push_back(part);
+  }
+  return boxes;
+}
+
 Proposal proposal_for(const InitOptions& options) {
   Proposal proposal{.target = make_target_box(options),
                     .sensor = config::find_sensor(options.sensor)};
   const double side = proposal.target.sizes().maxCoeff();
-  const double farthest = 0.5 * max_range(proposal.sensor);
+  const double share = proposal.sensor.useful_range ? 0.9 : 0.5;
+  const double farthest = share * max_range(proposal.sensor);
   proposal.coverage_distance = rounded(side / (options.is_room() ? 300.0 : 200.0));
   proposal.view_distance = rounded(std::min(options.is_room() ? 0.3 * side : side, farthest));
   if (!options.has_vehicle()) return proposal;
@@ -108,7 +134,8 @@ Proposal proposal_for(const InitOptions& options) {
   if (!options.is_room()) {
     proposal.view_distance =
         std::clamp(proposal.view_distance, rounded(1.5 * proposal.clearance), 25.0);
-  } else if (proposal.target.sizes().minCoeff() <= 2.0 * proposal.clearance) {
+  } else if (proposal.target.sizes().minCoeff() <= 2.0 * proposal.clearance ||
+             around_column(proposal).empty()) {
     throw Error(ErrorKind::bad_usage,
                 fmt::format("--size: each side of the room must be longer than twice the clearance "
                             "({:g} m); raise --size or use --vehicle none",
@@ -153,10 +180,11 @@ std::string sensor_text(const InitOptions& options, const Proposal& proposal) {
       "  horizontal_fov_deg: {:.6g}\n"
       "  vertical_fov_deg: {:.6g}\n"
       "  min_range: {:g}  # metres\n"
-      "  max_range: {:g}  # metres; use the range in which the sensor is accurate\n",
+      "  max_range: {:g}  # metres; the range in which the sensor is accurate\n",
       proposal.sensor.name, camera->camera.width, camera->camera.height,
       camera->camera.horizontal_fov / degree, camera->camera.vertical_fov / degree,
-      camera->camera.min_range, camera->camera.max_range);
+      proposal.sensor.useful_range ? proposal.sensor.useful_range->min : camera->camera.min_range,
+      max_range(proposal.sensor));
 }
 
 std::string planner_text(const InitOptions& options, const Proposal& proposal) {
@@ -192,7 +220,7 @@ std::string limits_text(const InitOptions& options, const Proposal& proposal) {
                     rounded(0.2 * proposal.view_distance));
   }
   if (!options.is_room()) return text;
-  const double wall = options.has_vehicle() ? proposal.clearance : 0.0;
+  const double floor = options.has_vehicle() ? proposal.clearance : 0.2;
   return text +
          fmt::format(
              "site:  # keeps views inside the room; the frame's origin is the middle of the floor\n"
@@ -200,8 +228,25 @@ std::string limits_text(const InitOptions& options, const Proposal& proposal) {
              "[{0:.4g}, {3:.4g}]]\n"
              "  min_height: {4:.4g}  # z in metres\n"
              "  max_height: {5:.4g}  # z in metres\n",
-             room.min().x(), room.min().y(), room.max().x(), room.max().y(), std::max(0.2, wall),
-             room.max().z() - wall);
+             room.min().x(), room.min().y(), room.max().x(), room.max().y(), floor, room.max().z());
+}
+
+std::string unknown_text(const InitOptions& options, const Proposal& proposal,
+                         const AlignedBox3d& unknown) {
+  if (!options.is_room()) return fmt::format("  unknown_box: {}\n", box_text(unknown));
+  const std::vector<AlignedBox3d> boxes = around_column(proposal);
+  std::string more;
+  for (std::size_t i = 1; i < boxes.size(); ++i) {
+    more += fmt::format("{}{}, {}", i == 1 ? "" : ",\n    ", vector_text(boxes[i].min()),
+                        vector_text(boxes[i].max()));
+  }
+  return fmt::format(
+      "  # The boxes leave out the column above the take-off point, in which the vehicle climbs "
+      "before\n"
+      "  # the first scan: the pilot must check that it is free.\n"
+      "  unknown_box: {}\n"
+      "  extra_unknown_boxes: [{}]  # corners of the other boxes\n",
+      box_text(boxes.front()), more);
 }
 
 std::string flight_text(const InitOptions& options, const Proposal& proposal) {
@@ -220,10 +265,10 @@ std::string flight_text(const InitOptions& options, const Proposal& proposal) {
       "  clearance: {:g}  # metres from the vehicle's centre to anything not known to be free\n"
       "  # Unknown space in this box is treated as occupied. Outside, the airspace above the "
       "ground\n"
-      "  # is assumed free: the pilot must check it.\n"
-      "  unknown_box: {}\n",
+      "  # is assumed free: the pilot must check it.\n",
       is_file ? model_text(options.vehicle, options.out) : yaml_quoted(options.vehicle),
-      proposal.clearance, box_text(unknown));
+      proposal.clearance);
+  text += unknown_text(options, proposal, unknown);
   if (options.is_room()) {
     const double height = 0.5 * proposal.target.sizes().z();
     text += fmt::format(

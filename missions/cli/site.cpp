@@ -231,6 +231,7 @@ int propose_site(const SiteOptions& options, const Console& console) {
   const wizard::SiteRequest request = to_site_request(options);
   if (const auto shown = show_objects(options, request, file, folder, console)) return *shown;
   const std::string text = wizard::propose_mission(request, file);
+  const bool is_datum_assumed = wizard::assumes_geoid(request);
   progress.show("drawing the map");
   const config::MissionSetup setup = config::parse_mission(text, file.string());
   const std::string page = make_page(setup.name, setup.simulation, file);
@@ -238,6 +239,11 @@ int propose_site(const SiteOptions& options, const Console& console) {
   folder.write(file.filename().string(), text);
   folder.write(page_path.filename().string(), page);
   folder.commit();
+  if (is_datum_assumed) {
+    warn(console, options.map.string() +
+                      ": missing vertical datum; heights are assumed to be AMSL (EGM96). Set "
+                      "--vertical if they are not");
+  }
   const Eigen::Vector3d pad = setup.flight().takeoff.value();
   console.out << fmt::format("{}: a first mission for {}\n", file.string(), setup.name)
               << site_data::format_priors(*setup.scene().priors)

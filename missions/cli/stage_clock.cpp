@@ -27,7 +27,7 @@ std::string without_numbers(const std::string& text) {
 struct Count {
   double done = 0.0, total = 0.0;
   std::size_t end = 0;  ///< Position in the message after the total, or of the percent sign.
-  bool is_percent = false;
+  bool is_percent = false, is_limit = false;  ///< is_limit: the stage may end before the total.
 };
 
 /// Returns the number that ends before a position in the message, or nullopt.
@@ -43,17 +43,18 @@ std::optional<Count> count_in(const std::string& text) {
   for (std::size_t at = text.find(of); at != std::string::npos; at = text.find(of, at + 1)) {
     const std::optional<double> done = number_before(text, at);
     std::size_t next = at + of.size();
-    if (text.compare(next, at_most.size(), at_most) == 0) next += at_most.size();
+    const bool is_limit = text.compare(next, at_most.size(), at_most) == 0;
+    if (is_limit) next += at_most.size();
     if (!done || next >= text.size() || !is_digit(text[next])) continue;
     std::size_t end = next;
     while (end < text.size() && is_digit(text[end])) ++end;
-    return Count{*done, std::strtod(text.c_str() + next, nullptr), end, false};
+    return Count{*done, std::strtod(text.c_str() + next, nullptr), end, false, is_limit};
   }
   const std::size_t percent = text.find('%');
   if (percent == std::string::npos) return std::nullopt;
   const std::size_t end = percent > 0 && text[percent - 1] == ' ' ? percent - 1 : percent;
   const std::optional<double> done = number_before(text, end);
-  return done ? std::optional(Count{*done, 100.0, percent, true}) : std::nullopt;
+  return done ? std::optional(Count{*done, 100.0, percent, true, false}) : std::nullopt;
 }
 
 std::string duration_text(double seconds) {
@@ -84,6 +85,7 @@ void StageClock::hear(const std::string& text, double now) {
   done_ = count->done;
   total_ = count->total;
   is_percent_ = count->is_percent;
+  is_limit_ = count->is_limit;
 }
 
 std::string StageClock::rate_text() const {
@@ -91,7 +93,8 @@ std::string StageClock::rate_text() const {
   const double duration = now_ - stage_begin_, advanced = *done_ - *first_;
   if (duration < min_duration || advanced <= 0.0 || *total_ < *done_) return "";
   const double rate = advanced / duration;
-  const std::string left = duration_text((*total_ - *done_) / rate) + " left";
+  const std::string left =
+      (is_limit_ ? "at most " : "") + duration_text((*total_ - *done_) / rate) + " left";
   return is_percent_ ? ", " + left : fmt::format(", {:.2g}/s, {}", rate, left);
 }
 

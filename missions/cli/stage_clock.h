@@ -13,8 +13,9 @@ class StageClock {
   void hear(const std::string& text, double now);
 
   /// Returns the rate and remaining time, such as ", 2.5/s, 40 s left", computed from "N of M" or
-  /// "N%" in the latest message. Returns an empty string during the first two seconds of a stage,
-  /// and for messages without such numbers or with a remaining time of their own.
+  /// "N%" in the latest message. For "N of at most M", the time is an upper bound. Returns an empty
+  /// string during the first two seconds of a stage, and for messages without such numbers or with
+  /// a remaining time of their own.
   std::string rate_text() const;
 
   /// Returns true if the log requires a line now: at the start of a stage, and ten seconds after
@@ -32,7 +33,7 @@ class StageClock {
   double stage_begin_ = 0.0;      ///< Start of the stage [s].
   std::optional<double> first_, done_,
       total_;  ///< Counts at the start of the stage, now, and at its end.
-  bool names_time_ = false, is_percent_ = false;
+  bool names_time_ = false, is_percent_ = false, is_limit_ = false;
 };
 
 }  // namespace skycap::missions::cli

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
+#include <numbers>
 
 #include "flight/motion/motion.h"
 #include "flight/route/route.h"
@@ -130,7 +132,7 @@ std::optional<double> compute_view_price(const MissionDocument& document,
 survey::surfel::SurfelConfig skycap_config(const MissionDocument& document,
                                            const flight::FlightOptions& flight) {
   const sim::SurveySensorOptions& sensor = document.sensor.options;
-  survey::surfel::SurfelConfig config{.coverage_radius = document.evaluation.registration_distance,
+  survey::surfel::SurfelConfig config{.coverage_radius = compute_planned_distance(document),
                                       .spacing = compute_spacing(document),
                                       .view_distance = compute_view_distance(document),
                                       .max_incidence = sensor.camera.max_incidence,
@@ -226,6 +228,21 @@ survey::see::SeeConfig see_config(const MissionDocument& document) {
   see.view_distance = sampling.view_distance;
   see.scene_box = sampling.scene_box;
   return see;
+}
+
+double compute_density_distance(const MissionDocument& document) {
+  const std::optional<double>& density = document.planner.sampling.density_per_m2;
+  if (!density) return std::numeric_limits<double>::infinity();
+  return std::sqrt(2.0 / (3.0 * std::numbers::sqrt3 * *density));
+}
+
+double compute_volume_density(const MissionDocument& document) {
+  const SamplingSection& sampling = document.planner.sampling;
+  return 0.75 * sampling.density_per_m2.value() / sampling.resolution_radius;
+}
+
+double compute_planned_distance(const MissionDocument& document) {
+  return std::min(document.evaluation.registration_distance, compute_density_distance(document));
 }
 
 double compute_spacing(const MissionDocument& document) {

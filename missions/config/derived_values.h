@@ -24,6 +24,20 @@ flight::Site make_site(const MissionDocument& document);
 /// Returns the settings of SEE and SEE++, including the sampling settings shared by all planners.
 survey::see::SeeConfig see_config(const MissionDocument& document);
 
+/// Returns the distance [m] within which stored points must cover a surface so that their mean
+/// density is at least planner.density_per_m2, or infinity without that key. A covering of a plane
+/// by discs of radius R has at least 2 / (3 sqrt(3) R^2) discs per area. Source: Kershner, The
+/// Number of Circles Covering a Set, American Journal of Mathematics 61, 1939.
+double compute_density_distance(const MissionDocument& document);
+
+/// Returns rho [1/m^3] for planner.density_per_m2 n, with which SEE and SEE++ require n points per
+/// m^2 in a disc of radius r: k = 4/3 pi r^3 rho = n pi r^2. Requires the key.
+double compute_volume_density(const MissionDocument& document);
+
+/// Returns the distance [m] within which the planner skycap plans a stored point of each position:
+/// evaluation.coverage_distance or compute_density_distance(), whichever is smaller.
+double compute_planned_distance(const MissionDocument& document);
+
 /// Returns epsilon, the point spacing [m]: planner.spacing, or rho^(-1/2) if the key is missing.
 double compute_spacing(const MissionDocument& document);
 

@@ -91,10 +91,11 @@ enum class PlannerGoal {
 
 /// Sampling density and view distance, used by all planners.
 struct SamplingSection {
-  double density = 146'000.0;           ///< rho, required points per m^3
-  double resolution_radius = 0.017;     ///< r, the neighbourhood radius for classifying points [m]
-  std::optional<double> spacing;        ///< epsilon, minimum distance between stored points [m]
-  std::optional<double> view_distance;  ///< d, the distance of views from surfaces [m]
+  double density = 146'000.0;            ///< rho, required points per m^3
+  std::optional<double> density_per_m2;  ///< required points per m^2 of surface; replaces density
+  double resolution_radius = 0.017;      ///< r, the neighbourhood radius for classifying points [m]
+  std::optional<double> spacing;         ///< epsilon, minimum distance between stored points [m]
+  std::optional<double> view_distance;   ///< d, the distance of views from surfaces [m]
   std::optional<Eigen::AlignedBox3d> scene_box;  ///< measurements outside are discarded
 };
 

@@ -1,6 +1,7 @@
 #include "missions/config/mission_rules.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -123,6 +124,29 @@ void check_scene(const MissionDocument& document) {
   }
 }
 
+void check_density(const MissionDocument& document) {
+  const SamplingSection& sampling = document.planner.sampling;
+  if (!sampling.density_per_m2) return;
+  const char* const key = "planner.density_per_m2";
+  if (survey::find_title(document.planner.name).metric) {
+    document.reject(key, "requires the planner skycap, see++ or see; the planner " +
+                             std::string(survey::find_title(document.planner.name).word) +
+                             " plans for voxels. Set planner.name: skycap or remove the key");
+  }
+  // A completed mission sets both keys, with consistent values.
+  const double density = compute_volume_density(document);
+  if (std::abs(sampling.density - density) > 1e-6 * density) {
+    document.reject("planner.density",
+                    "conflicts with planner.density_per_m2; remove one of the two");
+  }
+  const double max_spacing = compute_density_distance(document);
+  if (compute_spacing(document) > max_spacing) {
+    document.reject("planner.spacing", "must be at most " + short_text(max_spacing) + " m for " +
+                                           short_text(*sampling.density_per_m2) +
+                                           " points per square metre; lower it or remove it");
+  }
+}
+
 void check_live(const MissionDocument& document) {
   if (!document.planner.sampling.scene_box && !has_target(document)) {
     document.reject("planner.scene_box.min",
@@ -231,7 +255,7 @@ void check_flight(const MissionDocument& document) {
       flight.map_error < 3.0 * sigma * (1.0 - 1e-12)) {  // 3 x 0.05 is above 0.15
     document.reject("flight.map_error",
                     "must be at least three standard deviations of the sensor noise: " +
-                        short_text(3.0 * sigma) + " m");
+                        short_text(3.0 * sigma) + " m; raise it, or lower sensor.noise.sigma");
   }
   if (const double max = flight.required_vehicle().max_wind; flight.wind_speed >= max) {
     document.reject("flight.wind_speed", "must be less than the maximum wind of " +

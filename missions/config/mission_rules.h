@@ -19,6 +19,10 @@ void check_start(const MissionDocument& document);
 /// Checks the depth camera and the capture mode.
 void check_sensor(const MissionDocument& document);
 
+/// Checks that the planner supports planner.density_per_m2, and that planner.density and
+/// planner.spacing do not conflict with it. Requires the completed spacing.
+void check_density(const MissionDocument& document);
+
 /// Checks the georeference. With a vehicle, it also checks the clearance budget, the take-off
 /// climb, the wind limit and the flight mode.
 void check_flight(const MissionDocument& document);

@@ -63,6 +63,7 @@ std::string_view find_replacing_photo_key(std::string_view key) {
   };
   static constexpr std::array replacements{
       Replacement{"planner.density", "photo.gsd"},
+      Replacement{"planner.density_per_m2", "photo.gsd"},
       Replacement{"planner.spacing", "photo.gsd"},
       Replacement{"planner.view_distance", "photo.gsd"},
       Replacement{"planner.resolution_radius", "photo.gsd"},

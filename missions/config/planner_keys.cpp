@@ -65,6 +65,15 @@ std::vector<Key> density_keys() {
   return {
       number_key("planner.density", "points/m^3", above(0, 1e12),
                  sampling(&SamplingSection::density), "rho: required density of the measurements."),
+      otherwise(
+          "from planner.density",
+          number_key("planner.density_per_m2", "points/m^2", above(0, 1e8),
+                     sampling(&SamplingSection::density_per_m2),
+                     "Required number of stored points per square metre of surface; replaces "
+                     "planner.density. The default values of spacing, resolution_radius and "
+                     "view_distance are derived from it. The planner skycap plans until a stored "
+                     "point is within 0.62 n^(-1/2) of each position, where n is this density. "
+                     "Requires the planner skycap, see++ or see.")),
       number_key("planner.resolution_radius", "m", above(0, 1e3),
                  sampling(&SamplingSection::resolution_radius),
                  "r: radius in which the density is counted."),

@@ -177,6 +177,23 @@ void derive_scanner_flight(MissionDocument& document) {
   if (!document.has("scan.sensor")) document.scan.sensor = *document.sensor.lidar;
 }
 
+/// Derives the sampling from planner.density_per_m2 for keys that are not set. The neighbourhood of
+/// SEE and SEE++ is a disc with 4 pi points. At the default view distance, the rays on a wall are
+/// half the planned distance apart, which is also the default of the planner skycap.
+void derive_density(MissionDocument& document) {
+  SamplingSection& sampling = document.planner.sampling;
+  if (!sampling.density_per_m2) return;
+  if (!document.has("planner.resolution_radius")) {
+    sampling.resolution_radius = 2.0 / std::sqrt(*sampling.density_per_m2);
+  }
+  if (!document.has("planner.density")) sampling.density = compute_volume_density(document);
+  if (!document.has("planner.view_distance") && !document.sensor.lidar) {
+    const Eigen::Vector2d pixels =
+        geometry::Camera(document.sensor.options.camera.camera).focal_length_px();
+    sampling.view_distance = 0.5 * compute_density_distance(document) * std::sqrt(pixels.prod());
+  }
+}
+
 /// Derives the point spacing. If no further point fits, every surface position is within the
 /// spacing of a stored point. The spacing is 80% of the coverage distance; the rest is a margin for
 /// noise. It is not smaller than the distance between camera rays, because no view could provide
@@ -184,7 +201,11 @@ void derive_scanner_flight(MissionDocument& document) {
 void derive_spacing(MissionDocument& document) {
   if (document.has("planner.spacing")) return;
   constexpr double share = 0.8;
-  double covering = share * document.evaluation.registration_distance;
+  double covering = share * compute_planned_distance(document);
+  if (document.planner.sampling.density_per_m2) {  // Several views reach the density together.
+    document.planner.sampling.spacing = covering;
+    return;
+  }
   if (!document.sensor.lidar) {
     const Eigen::Vector2d pixels =
         geometry::Camera(document.sensor.options.camera.camera).focal_length_px();
@@ -298,7 +319,9 @@ void complete_own_keys(MissionDocument& document, const Profiles& profiles) {
   check_scene(document);
   check_start(document);
   check_sensor(document);
+  derive_density(document);
   derive_spacing(document);
+  check_density(document);
 }
 
 /// Completes the keys that depend on prior data.

@@ -1,9 +1,11 @@
 #include "missions/evaluation/coverage.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <optional>
 
 #include "geometry/points/point_grid.h"
 
@@ -45,17 +47,28 @@ CoverageMeter::Cell CoverageMeter::sample_cell(const Eigen::Vector3f& sample) co
 }
 
 void CoverageMeter::add(std::span<const Eigen::Vector3f> points) {
+  using Corner = std::array<std::int64_t, 3>;
+  std::optional<Corner> latest;  // Consecutive points are usually close to the same corner.
+  std::array<Cell, 8> cells{};
+  std::size_t count = 0;  // Number of cells around that corner with uncovered samples.
   for (const Eigen::Vector3f& point : points) {
     // The eight cells around the cell corner nearest to the point contain the whole ball.
     const auto corner = [&](int axis) {
       return static_cast<std::int64_t>(std::floor(double{point[axis]} / cell_size_ + 0.5));
     };
-    const std::int64_t x = corner(0), y = corner(1), z = corner(2);
-    for (std::int64_t i = x - 1; i <= x; ++i) {
-      for (std::int64_t j = y - 1; j <= y; ++j) {
-        for (std::int64_t k = z - 1; k <= z; ++k) cover_cell(cell_at(i, j, k), point);
+    const Corner nearest{corner(0), corner(1), corner(2)};
+    if (nearest != latest) {
+      latest = nearest;
+      count = 0;
+      for (std::size_t i = 0; i < cells.size(); ++i) {
+        const Cell cell = cell_at(nearest[0] - static_cast<std::int64_t>(i >> 2U & 1U),
+                                  nearest[1] - static_cast<std::int64_t>(i >> 1U & 1U),
+                                  nearest[2] - static_cast<std::int64_t>(i & 1U));
+        const Range* const range = ranges_.find(cell);
+        if (range != nullptr && range->begin != range->end) cells[count++] = cell;
       }
     }
+    for (std::size_t i = 0; i < count; ++i) cover_cell(cells[i], point);
   }
 }
 

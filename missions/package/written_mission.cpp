@@ -37,11 +37,6 @@ bool is_same(const ViewInFlight& a, const ViewInFlight& b) {
          (a.velocity - b.velocity).norm() <= same_speed;
 }
 
-bool commands_camera(flight::Format format) {
-  return format != flight::Format::kml && format != flight::Format::geojson &&
-         format != flight::Format::tum;
-}
-
 geometry::View to_view(const flight::InterpretedStop& capture) {
   return {capture.position,
           flight::compute_direction({geometry::radians_per_degree * capture.yaw_deg,
@@ -186,7 +181,9 @@ std::vector<ViewInFlight> written_views(const flight::FlightOptions& options,
     captures.insert(captures.end(), file.captures.begin(), file.captures.end());
   }
   std::vector<ViewInFlight> views = session::measured_views(options, flight_record);
-  if (options.capture.is_scanner || !commands_camera(format)) return views;
+  // Trajectories contain captures although they do not command the camera.
+  const bool has_captures = flight::captures_images(format) || !captures.empty();
+  if (options.capture.is_scanner || !has_captures) return views;
   std::erase_if(views, [&](ViewInFlight& view) {
     const std::optional<geometry::View> captured = make_capture(view.view, captures);
     if (captured) view.view = *captured;

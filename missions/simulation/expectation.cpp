@@ -7,9 +7,11 @@
 #include <memory>
 #include <vector>
 
+#include "flight/motion/motion.h"
 #include "geometry/surfaces/mesh.h"
 #include "missions/evaluation/coverage.h"
 #include "missions/evaluation/downsampled_cloud.h"
+#include "missions/session/initial_pattern_flight.h"
 #include "missions/simulation/omniscient.h"
 #include "sim/sensors/survey_sensor.h"
 #include "survey/planners/planner_names.h"
@@ -54,17 +56,40 @@ double path_from_json(const std::vector<View>& views) {
   return distance;
 }
 
+/// Returns the time from take-off to the first view, through the initial pattern, and from the last
+/// view to landing [s].
+double estimate_transfer(const session::SurveyOptions& options, const std::vector<View>& known,
+                         const flight::Motion& motion, std::uint64_t seed) {
+  const flight::FlightOptions& flight = options.flight;
+  const double height = known.front().position.z();
+  const Eigen::Vector3d pad = flight.takeoff.value_or(
+      Eigen::Vector3d(known.front().position.x(), known.front().position.y(), 0.0));
+  const double climb = std::max(flight.route(pad).takeoff_climb, height - pad.z());
+  const Eigen::Vector3d home(pad.x(), pad.y(), pad.z() + climb);
+  const double time = motion.takeoff_time(climb) + motion.landing_time(climb) +
+                      motion.leg_time(known.front().position - home) +
+                      motion.leg_time(home - known.back().position);
+  const std::vector<View> pattern = session::initial_pattern_views(options.start, seed);
+  return time + path_from_json(pattern) / flight.cruise_speed;
+}
+
 /// Returns the flight time for a number of views [min]. The path length grows with the square root
 /// of this number, as for tours.
 double estimate_minutes(const session::SurveyOptions& options, const std::vector<View>& known,
-                        double views) {
-  const flight::FlightOptions& flight = options.flight;
-  const bool has_vehicle = flight.has_vehicle();
-  const double speed = has_vehicle ? flight.cruise_speed : options.limits.speed;
-  const double stop =
-      has_vehicle ? flight.rest_before() + flight.rest_after() : options.limits.time_per_view;
+                        double views, std::uint64_t seed) {
   const double more = std::sqrt(views / static_cast<double>(known.size()));
-  return (path_from_json(known) * more / speed + views * stop) / seconds_per_minute;
+  const double distance = path_from_json(known) * more;
+  const flight::FlightOptions& flight = options.flight;
+  if (!flight.has_vehicle()) {
+    return (distance / options.limits.speed + views * options.limits.time_per_view) /
+           seconds_per_minute;
+  }
+  const flight::Motion motion(flight.required_vehicle(),
+                              flight.route(Eigen::Vector3d::Zero()).conditions);
+  const double stop = flight.rest_before() + flight.rest_after();
+  const double leg = motion.leg_time({distance / views, 0.0, 0.0});
+  return (estimate_transfer(options, known, motion, seed) + views * (leg + stop)) /
+         seconds_per_minute;
 }
 
 double estimate_memory(const survey::PlannerOptions& planner, const evaluation::SurveyScene& scene,
@@ -125,6 +150,10 @@ Expectation expectation(const evaluation::SimulationOptions& options,
       asked.limits.max_time.value_or(std::numeric_limits<double>::max()) / seconds_per_minute;
   const ViewTimes times = times_of_a_view(options, scene, run);
   const double view = times.measured + times.planned + times.evaluated;
+  // The written files are flown again; if they capture different views, several times.
+  const double again = times.measured + 2.0 * times.evaluated;
+  // Route, return and files of a small survey [s].
+  constexpr double min_results = 0.3, max_results = 1.5;
   // The attainable coverage takes scans that nothing is planned from, fewer if they cover it all.
   constexpr double fewest = 0.5;
   const double attainable =
@@ -132,11 +161,11 @@ Expectation expectation(const evaluation::SimulationOptions& options,
   return {.known_views = known.size(),
           .min_views = static_cast<std::size_t>(min),
           .max_views = static_cast<std::size_t>(max),
-          .min_minutes = std::min(minutes, estimate_minutes(asked, known, min)),
-          .max_minutes = std::min(minutes, estimate_minutes(asked, known, max)),
+          .min_minutes = std::min(minutes, estimate_minutes(asked, known, min, run.seed)),
+          .max_minutes = std::min(minutes, estimate_minutes(asked, known, max, run.seed)),
           .memory = estimate_memory(asked.planner, scene, max),
-          .min_time = view * min + fewest * attainable,
-          .max_time = view * max + attainable};
+          .min_time = min_results + (view + again) * min + fewest * attainable,
+          .max_time = max_results + (view + 2.0 * again) * max + attainable};
 }
 
 }  // namespace skycap::missions::simulation

@@ -350,11 +350,14 @@ Source completed(Source source, const Assumptions& assumed) {
     return source;
   }
   const SiteTransform transform(source, contents, {}, false);
+  std::optional<HeightDatum> vertical = assumed.vertical;
+  if (!vertical && assumed.has_heights_above_geoid && !(contents.is_outlines && is_flat)) {
+    vertical = HeightDatum::geoid;
+  }
   // EGM96 may replace a geoid whose grid is not installed.
-  const bool may_substitute =
-      transform.has_vertical_datum() && assumed.vertical == HeightDatum::geoid;
+  const bool may_substitute = transform.has_vertical_datum() && vertical == HeightDatum::geoid;
   if ((!transform.has_own_heights() || may_substitute) && !contents.vertical) {
-    source.vertical = assumed.vertical;
+    source.vertical = vertical;
   }
   return source;
 }

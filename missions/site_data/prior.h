@@ -94,6 +94,9 @@ struct Assumptions {
   std::string crs;
   std::optional<HeightDatum> vertical;
   bool has_terrain = false;  ///< Outlines without heights and base are placed on the terrain.
+  /// Without `vertical`, heights in a file without a vertical datum are above the geoid, and EGM96
+  /// replaces a geoid whose grid is not installed. Outlines without heights are not affected.
+  bool has_heights_above_geoid = false;
 };
 
 /// Returns the source completed with the assumptions that its file requires. Information in the

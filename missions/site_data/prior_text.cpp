@@ -37,8 +37,11 @@ std::string format_priors(const Source& source, const Prior& prior) {
     const Eigen::Vector3d size = prior.box.sizes();
     text += fmt::format("{}{:.3f} x {:.3f} x {:.3f} m, z {:.2f} to {:.2f} m", indent, size.x(),
                         size.y(), size.z(), prior.box.min().z(), prior.box.max().z());
-    text += heights_text("above the ellipsoid", prior.ellipsoid_heights);
-    text += heights_text("above mean sea level", prior.sea_level_heights);
+    // Absolute heights are those of the site, which may be unknown.
+    if (source.vertical != HeightDatum::takeoff) {
+      text += heights_text("above the ellipsoid", prior.ellipsoid_heights);
+      text += heights_text("above mean sea level", prior.sea_level_heights);
+    }
     text += fmt::format("\n{}{:.1f} m from the site's origin, uncertainty {:.2f} m\n", indent,
                         prior.box.exteriorDistance(Eigen::Vector3d::Zero()), prior.uncertainty);
   }

@@ -71,6 +71,10 @@ AdvName adv_name(std::string_view names) {
 }  // namespace
 
 std::string proj_name(const std::string& crs) {
+  // Names of the map projections of Switzerland in its city models. PROJ knows the geographic
+  // systems by them.
+  if (crs == "CH1903") return "EPSG:21781";
+  if (crs == "CH1903+") return "EPSG:2056";
   constexpr std::string_view adv = "urn:adv:crs:";
   if (!crs.starts_with(adv)) return crs;
   const AdvName name = adv_name(std::string_view(crs).substr(adv.size()));

@@ -54,7 +54,8 @@ GeodeticTransform geodetic_transform(const ReferenceRequest& request);
 
 /// Translates names used by authorities to names known to PROJ. For example,
 /// "urn:adv:crs:ETRS89_UTM32*DE_DHHN2016_NH" becomes EPSG:25832+7837. Spaces or the name of a geoid
-/// may follow. Other names are returned unchanged.
+/// may follow. "CH1903" is the map projection of that name, EPSG:21781. Other names are returned
+/// unchanged.
 std::string proj_name(const std::string& crs);
 
 /// Returns a name built from the EPSG numbers in a name that PROJ does not know, such as

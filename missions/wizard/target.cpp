@@ -147,7 +147,11 @@ std::vector<Source> collect_files(const SiteRequest& request) {
   if (counts_from_takeoff) map.vertical = request.import_options.vertical;
   map.base = request.import_options.base;
   map.height = request.import_options.height;
-  std::vector<Source> files{site_data::completed(map, assumed)};
+  // An error of the whole map's height does not affect a mission without other files. Those must
+  // specify their datum.
+  site_data::Assumptions assumed_of_map = assumed;
+  assumed_of_map.has_heights_above_geoid = !map.vertical;
+  std::vector<Source> files{site_data::completed(map, assumed_of_map)};
   for (const std::filesystem::path& path : request.obstacles) {
     files.push_back(site_data::completed(file(path, Role::obstacle), assumed));
   }
@@ -156,6 +160,15 @@ std::vector<Source> collect_files(const SiteRequest& request) {
   }
   require_complete(files);
   return files;
+}
+
+bool assumes_geoid(const SiteRequest& request) {
+  if (request.import_options.vertical) return false;
+  Source map;
+  map.file = request.map;
+  map.crs = request.import_options.crs;
+  const site_data::MissingValues missing = site_data::missing_values(map);
+  return missing.vertical && !missing.base;
 }
 
 std::vector<Object> list_things(const std::vector<Source>& files) {

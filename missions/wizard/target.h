@@ -27,6 +27,11 @@ struct Target {
 /// throws.
 std::vector<site_data::Source> collect_files(const SiteRequest& request);
 
+/// Returns whether collect_files() assumes that the heights in the map are above the geoid, because
+/// neither the map nor the request specifies a vertical datum. Throws the errors of
+/// site_data::missing_values().
+bool assumes_geoid(const SiteRequest& request);
+
 /// All objects of the first of the files about their middle, in the frame's axes. Throws what
 /// site_data::read_prior() throws.
 std::vector<site_data::Object> list_things(const std::vector<site_data::Source>& files);

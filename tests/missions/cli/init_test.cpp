@@ -70,6 +70,14 @@ TEST(Init, WritesLiveMissionForRoom) {
       {"init", "room", "--vehicle", "generic", "--size", "20", "30", "9", "--out", hall});
   ASSERT_EQ(wide.exit_code, 0) << wide.err;
   EXPECT_TRUE(config::read_live_mission(hall).flight().has_vehicle());
+  // The vehicle can take off before anything is measured.
+  EXPECT_EQ(run_skycap({"check", hall}).exit_code, 0);
+  EXPECT_THAT(run_skycap({"next", hall, "--survey", folder / "t"}).out, HasSubstr("view 0: "));
+  const auto low = run_skycap({"check", hall, "--set", "site.max_height=5"});
+  EXPECT_EQ(low.exit_code, 1);
+  EXPECT_THAT(low.out, HasSubstr("problem   the end of the take-off climb"));
+  // The useful range of the preset, which measures up to 10 m.
+  EXPECT_EQ(setup.sensor().camera.camera.max_range, 3.0);
 }
 
 TEST(Init, RejectsOverwritingAndUnknownNames) {

@@ -19,7 +19,7 @@ TEST(StageClock, TellsRateAndRemainingTimeOfAStage) {
   clock.hear("vase: view 10 of at most 50, 900 points", 100.0);
   EXPECT_EQ(clock.rate_text(), "");
   clock.hear("vase: view 20 of at most 50, 1500 points", 104.0);
-  EXPECT_EQ(clock.rate_text(), ", 2.5/s, 12 s left");
+  EXPECT_EQ(clock.rate_text(), ", 2.5/s, at most 12 s left");
   // The rate of a new stage does not depend on the previous stage.
   clock.hear("vase: writing 5 of 10", 110.0);
   EXPECT_EQ(clock.rate_text(), "");

@@ -382,16 +382,32 @@ TEST_F(Site, AppliesVerticalOptionOnlyToFilesWithoutDatum) {
 }
 
 // Heights above the DHHN2016 geoid, whose grid is not in Debian. EGM96 differs from it by metres.
-TEST_F(Site, UsesEgm96ForMissingGeoidGridOnRequest) {
+TEST_F(Site, UsesEgm96ForMissingGeoidGrid) {
   write("tile.gml", tile(in_a_row, "EPSG:25832+7837"));
-  EXPECT_THAT(
-      run_skycap("site " + path_ + "/tile.gml --id DEBY_1 --out " + path_ + "/house.yaml").err,
-      HasSubstr("set vertical: geoid to use EGM96 instead"));
-  const auto run = run_skycap("site " + path_ + "/tile.gml --id DEBY_1 --vertical geoid --out " +
-                              path_ + "/house.yaml");
+  const auto run =
+      run_skycap("site " + path_ + "/tile.gml --id DEBY_1 --out " + path_ + "/house.yaml");
   ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("heights above the geoid refer to EGM96"));
+  EXPECT_EQ(run.err.find("missing vertical datum"), std::string::npos) << run.err;
   EXPECT_NEAR(mission().flight().site.origin.height,
               380.0 + site_data::egm96_undulation(48.7632, 11.3995), 0.02);
+}
+
+// Heights of official tiles are above sea level, also if the tile names a horizontal system only.
+TEST_F(Site, AssumesSeaLevelWithWarningIfMapHasNoVerticalDatum) {
+  const std::string command =
+      "site " + path_ + "/tile.gml --id DEBY_1 --out " + path_ + "/house.yaml";
+  const auto run = run_skycap(command);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("tile.gml: missing vertical datum; heights are assumed to be "
+                                 "AMSL (EGM96). Set --vertical if they are not"));
+  EXPECT_THAT(read_content(folder_.path() / "house.yaml"), HasSubstr("vertical: geoid"));
+  EXPECT_NEAR(mission().flight().site.origin.height,
+              380.0 + site_data::egm96_undulation(48.7632, 11.3995), 0.02);
+  // The datum of another file must not be guessed: an error would move it relative to the target.
+  write("more.gml", tile(in_a_row));
+  EXPECT_THAT(run_skycap(command + "2.yaml --obstacle " + path_ + "/more.gml").err,
+              HasSubstr("more.gml: missing vertical datum; set --vertical ellipsoid or geoid"));
 }
 
 TEST_F(Site, AppliesHeightOptionToObjectsWithoutHeight) {

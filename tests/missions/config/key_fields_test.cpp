@@ -194,6 +194,8 @@ constexpr KeyField fields[] = {
     {"planner.preset", [](const Document& d) { return value(d.planner.preset); }},
     {"planner.goal", [](const Document& d) { return value(d.planner.goal); }},
     {"planner.density", [](const Document& d) { return value(d.planner.sampling.density); }},
+    {"planner.density_per_m2",
+     [](const Document& d) { return value(d.planner.sampling.density_per_m2); }},
     {"planner.resolution_radius",
      [](const Document& d) { return value(d.planner.sampling.resolution_radius); }},
     {"planner.occlusion_search_distance",

@@ -1,5 +1,6 @@
 #include "missions/config/resolve.h"
 
+#include <cmath>
 #include <string>
 #include <variant>
 #include <vector>
@@ -89,6 +90,52 @@ TEST(Resolve, LimitsSpacingToCoverageDistance) {
   EXPECT_DOUBLE_EQ(spacing("0.05", ", spacing: 0.06"), 0.06) << "as the mission says";
   // At 1 m, the image of a D435 is 2 tan(69.4 deg / 2) = 1.385 m wide.
   EXPECT_NEAR(spacing("0.001", ", view_distance: 10"), 10 * 1.385 / 848, 1e-4) << "as rays meet it";
+}
+
+config::MissionSetup with_density(const std::string& planner) {
+  return config::parse_mission("scene: {model: 'builtin:teapot'}\nplanner: {" + planner +
+                                   "}\nevaluation: {coverage_distance: 1}\n",
+                               "m.yaml");
+}
+
+// Of all coverings of a plane by discs, the hexagonal lattice has the fewest discs. Its cells have
+// the side a, the area sqrt(3) / 2 a^2 per point, and corners a / sqrt(3) from the points.
+TEST(Resolve, PlansCoverageThatGuaranteesDensityPerSquareMetre) {
+  const config::MissionSetup setup = with_density("name: skycap, density_per_m2: 100");
+  const double side = std::sqrt(2.0 / (std::sqrt(3.0) * 100.0));
+  const auto& config = std::get<SurfelConfig>(setup.survey().planner.method);
+  EXPECT_NEAR(config.coverage_radius, side / std::sqrt(3.0), 1e-12);
+  EXPECT_NEAR(setup.survey().planner.spacing, 0.8 * side / std::sqrt(3.0), 1e-12);
+  EXPECT_EQ(setup.evaluation().registration_distance, 1.0) << "the evaluation does not change";
+  EXPECT_NEAR(std::get<SurfelConfig>(
+                  parsed("planner: {name: skycap, density_per_m2: 100}\n").survey().planner.method)
+                  .coverage_radius,
+              0.005, 1e-12)
+      << "the coverage distance of the mission is smaller";
+}
+
+// SEE and SEE++ count points in discs of radius r: 100 pi r^2.
+TEST(Resolve, ConvertsDensityPerSquareMetreForSee) {
+  const SeeConfig derived = see_config(with_density("name: see++, density_per_m2: 100"));
+  EXPECT_NEAR(derived.resolution_radius, 0.2, 1e-12);
+  EXPECT_EQ(derived.effective_core_threshold(), 13);
+  const SeeConfig given =
+      see_config(with_density("name: see++, density_per_m2: 100, resolution_radius: 0.5"));
+  EXPECT_EQ(given.effective_core_threshold(), 79);
+}
+
+TEST(Resolve, RejectsKeysThatConflictWithDensityPerSquareMetre) {
+  const auto message = [](const std::string& planner) {
+    return testing_support::thrown_message([&] { with_density(planner); });
+  };
+  EXPECT_THAT(message("name: skycap, density_per_m2: 100, density: 213"),
+              HasSubstr("key planner.density conflicts with planner.density_per_m2; remove one"));
+  EXPECT_THAT(message("name: skycap, density_per_m2: 100, spacing: 0.07"),
+              HasSubstr("key planner.spacing must be at most 0.06204 m for 100 points per square "
+                        "metre; lower it or remove it"));
+  EXPECT_THAT(message("name: oa, density_per_m2: 100"),
+              HasSubstr("key planner.density_per_m2 requires the planner skycap, see++ or see"));
+  EXPECT_EQ(message("name: skycap, density_per_m2: 100, spacing: 0.06"), "");
 }
 
 // A moving sensor also measures en route, so the goal is to minimise the stops.

@@ -1,5 +1,6 @@
 #include "missions/config/vehicle_reader.h"
 
+#include <array>
 #include <fstream>
 #include <numbers>
 
@@ -9,6 +10,7 @@
 #include "flight/motion/motion.h"
 #include "geometry/error.h"
 #include "missions/config/preset_files.h"
+#include "missions/config/sensor_reader.h"
 #include "tests/support/complaint.h"
 #include "tests/support/not_empty.h"
 #include "tests/support/temporary_folder.h"
@@ -108,6 +110,21 @@ TEST(VehicleReader, ReportsLineOfErrors) {
       HasSubstr("kite.yaml:2: key like: unknown vehicle dragon; expected one of: generic, "));
   EXPECT_THAT(error_message("name: kite\n"), HasSubstr("key dialect is missing"));
   EXPECT_THAT(error_message("like: generic\n"), HasSubstr("key name is missing"));
+}
+
+// Drone types of DJI's WPML documentation and product page; payload types of its WPMZ library: H20
+// 42, M30T 53, M3E 66, M4E 88, L1 90742, EP810 (L2) 84.
+TEST(VehiclePresets, HaveTypeNumbersOfTheMaker) {
+  const auto numbers = [](const char* name) {
+    const flight::WpmlCodes codes = config::find_vehicle(name).wpml;
+    return std::array{codes.drone, codes.drone_variant, codes.payload};
+  };
+  EXPECT_THAT(numbers("m350_rtk"), testing::ElementsAre(89, 0, 42));
+  EXPECT_THAT(numbers("m30t"), testing::ElementsAre(67, 1, 53));
+  EXPECT_THAT(numbers("mavic_3e"), testing::ElementsAre(77, 0, 66));
+  EXPECT_THAT(numbers("matrice_4e"), testing::ElementsAre(99, 0, 88));
+  EXPECT_EQ(config::find_sensor("dji_zenmuse_l1").wpml_payload, 90742);
+  EXPECT_EQ(config::find_sensor("dji_zenmuse_l2").wpml_payload, 84);
 }
 
 TEST(VehicleReader, ReadsVehicleFiles) {

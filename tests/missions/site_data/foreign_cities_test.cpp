@@ -67,6 +67,8 @@ TEST(ReferenceNames, AreConvertedToAuthorityCodes) {
                            "http://www.opengis.net/def/crs/EPSG/0/5728"}) {
     EXPECT_EQ(name_by_numbers(name), "EPSG:2056+5728") << name;
   }
+  EXPECT_EQ(proj_name("CH1903"), "EPSG:21781");
+  EXPECT_EQ(proj_name("CH1903+"), "EPSG:2056");
   EXPECT_EQ(name_by_numbers("http://www.opengis.net/gml/srs/epsg.xml#25832"), "EPSG:25832");
   EXPECT_EQ(name_by_numbers("urn:ogc:def:crs:EPSG:6.9:25832"), "EPSG:25832");
   EXPECT_EQ(name_by_numbers("local"), "");
