@@ -26,8 +26,9 @@ void ViewLimits::validate() const {
   require_limit(
       min_standoff >= 0.0 && std::isfinite(min_standoff),
       "stand_off is " + std::to_string(min_standoff) + "; it must be zero or more metres");
-  require_limit(!min_height || !max_height || *min_height < *max_height,
-                "max_height must be greater than the minimum height; otherwise no airspace remains");
+  require_limit(
+      !min_height || !max_height || *min_height < *max_height,
+      "max_height must be greater than the minimum height; otherwise no airspace remains");
   require_limit(
       min_pitch < max_pitch && std::abs(min_pitch) < 1.5708 && std::abs(max_pitch) < 1.5708,
       "max_pitch must be above the minimum pitch; both must be between -pi/2 and pi/2");

@@ -177,7 +177,8 @@ class WpmlFlight {
   /// Returns the speed on the leg from this waypoint, the global one if the waypoint uses it [m/s].
   double read_speed(pugi::xml_node mark) const {
     const bool is_global = child_text(mark, "useGlobalSpeed") == "1";
-    return is_global ? child_number(folder_, "autoFlightSpeed") : child_number(mark, "waypointSpeed");
+    return is_global ? child_number(folder_, "autoFlightSpeed")
+                     : child_number(mark, "waypointSpeed");
   }
 
   bool is_template() const { return file_ == "template.kml"; }

@@ -272,8 +272,10 @@ void add_evaluate(CLI::App& app, const Console& console, Action& action) {
   command->add_option("--density", options->density,
                       "Folder for the density of all points: raster (GeoTIFF), histograms, shares");
   command
-      ->add_option("--density-cell", options->density_cell,
-                   "Cell of the raster and radius around surface, in metres (default: 0.5)")
+      ->add_option(
+          "--density-cell", options->density_cell,
+          "Cell size of the raster, and radius around each surface sample, in metres (default: "
+          "0.5)")
       ->check(number_between(0.01, 100.0));
   command
       ->add_option("--min-density", options->min_density,

@@ -30,9 +30,10 @@ void add_control_points(const config::MissionSetup& setup, const PhotoAirspace& 
 /// Estimated size of a photo as JPEG file: half a byte for each pixel.
 inline constexpr double jpeg_bytes_per_pixel = 0.5;
 
-/// Stages summary.json, photos.csv and photo_surface.csv. A georeference adds geo.txt, control points
-/// add control_points.csv. A vehicle adds the route files, field_sheet.html and free_space.bin. `skycap export` verifies routes against free_space.bin. The caller
-/// commits the folder. Stores the files and their notes in `mission`.
+/// Stages summary.json, photos.csv and photo_surface.csv. A georeference adds geo.txt, control
+/// points add control_points.csv. A vehicle adds the route files, field_sheet.html and
+/// free_space.bin. `skycap export` verifies routes against free_space.bin. The caller commits the
+/// folder. Stores the files and their notes in `mission`.
 void stage_photo_mission(const config::MissionSetup& setup, const PhotoAirspace& airspace,
                          PhotoMission& mission, geometry::OutputFolder& folder);
 
