@@ -2,8 +2,8 @@
 ///
 /// Source: Jia, Li, Hao and Zhang, "PB-NBV: Efficient Projection-Based Next-Best-View Planning
 /// Framework for Reconstruction of Unknown Objects", IEEE RA-L 2025 (arXiv 2501.10663v2). Written
-/// from the text. Reading::released follows the released code where it differs and the difference
-/// is described in docs/explanation/pb-nbv.md.
+/// from the text. Reading::released follows the released code where it differs. Missions cannot
+/// select this planner yet.
 #pragma once
 
 #include <memory>
