@@ -67,7 +67,7 @@ std::vector<Key> density_keys() {
                  sampling(&SamplingSection::density), "rho: required density of the measurements."),
       otherwise(
           "from planner.density",
-          number_key("planner.density_per_m2", "points/m^2", above(0, 1e8),
+          number_key("planner.density_per_m2", "points/m^2", between(1e-4, 1e8),
                      sampling(&SamplingSection::density_per_m2),
                      "Required number of stored points per square metre of surface; replaces "
                      "planner.density. The default values of spacing, resolution_radius and "
