@@ -60,8 +60,7 @@ std::vector<Vector3d> outer_corners(std::span<const Vector3i> voxels, double vox
   std::ranges::sort(corners, [](const Vector3i& a, const Vector3i& b) {
     return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
   });
-  const auto same = std::ranges::unique(corners);
-  corners.erase(same.begin(), same.end());
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
   std::vector<Vector3d> points;
   for (const Vector3i& at : corners) points.push_back(voxel * at.cast<double>());
   return points;
