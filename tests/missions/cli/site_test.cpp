@@ -302,7 +302,7 @@ TEST_F(Site, KeepsEveryVehicleFarEnoughAway) {
 
 // The second command makes the photo table and the verified route.
 TEST_F(Site, PlansPhotosInTwoCommands) {
-  const auto site = propose("--id DEBY_1 --sensor mavic_3e_wide --gsd 0.01");
+  const auto site = propose("--id DEBY_1 --sensor mavic_3e_wide --gsd 0.02");
   ASSERT_EQ(site.exit_code, 0) << site.err;
   EXPECT_TRUE(std::filesystem::exists(folder_.path() / "house.html"));
   const config::MissionSetup proposed = mission();

@@ -257,7 +257,8 @@ TEST_F(PhotoMissionTest, ChoosesATakeoffPointInsideTheGeofence) {
 
 TEST_F(PhotoMissionTest, StaysOutsideOfTheUnknownBoxWhenSpaceIsMeasured) {
   const config::MissionSetup setup =
-      read(with(mission_yaml, "free_space: assumed", "free_space: measured"));
+      read(with(with(mission_yaml, "free_space: assumed", "free_space: measured"),
+                "gsd: 0.0026, patterns: [dome]", "gsd: 0.005, patterns: []"));
   const photo::PhotoAirspace airspace(setup, 2);
   const photo::PhotoMission mission =
       photo::plan_photo_mission(setup, airspace, {}, [](const std::string&) {});

@@ -88,7 +88,7 @@ std::string mission_text(Draw& draw) {
 
 /// The environment variable SKYCAP_RANDOM_PHOTO_MISSIONS sets another number of missions.
 std::size_t number_of_missions() {
-  constexpr std::size_t usual = 3;
+  constexpr std::size_t usual = 1;
   const char* requested = std::getenv("SKYCAP_RANDOM_PHOTO_MISSIONS");
   return requested == nullptr ? usual : std::stoul(requested);
 }
