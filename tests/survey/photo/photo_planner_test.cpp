@@ -30,7 +30,7 @@ class PhotosOfABox : public testing::Test {
     options_.camera = test_camera();
     options_.gsd = geometry::PhotoCamera(test_camera()).gsd(8.0);
     options_.patterns = {Pattern::dome};
-    options_.repair_rounds = 60;
+    options_.repair_rounds = 20;
   }
 
   PhotoPlanResult plan(unsigned threads = 2) const {
@@ -103,7 +103,7 @@ TEST_F(PhotosOfABox, AccountForAllThatIsNotSatisfied) {
 }
 
 TEST_F(PhotosOfABox, AreTheSameForAnyThreads) {
-  options_.repair_rounds = 10;
+  options_.repair_rounds = 4;
   const PhotoPlanResult one = plan(1), several = plan(8);
   ASSERT_EQ(one.views.size(), several.views.size());
   for (std::size_t i = 0; i < one.views.size(); ++i) {
