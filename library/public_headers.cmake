@@ -44,9 +44,11 @@ set(public_headers
 set(supporting_headers
   flight/autopilot/mission_mode.h
   flight/export/text.h
+  flight/interpreter/interpreted_route.h
   flight/motion/curve.h
   flight/motion/flight_style.h
   flight/motion/motion.h
+  flight/motion/photo_speed.h
   flight/motion/fly_through.h
   flight/motion/smoothing.h
   flight/paths/path.h
