@@ -285,6 +285,7 @@ std::vector<BlockImage> make_cube_images(const geometry::ScanSpan& scan,
         .sensor_position = sensor_position,
         .focal_length = Eigen::Vector2f::Constant(0.5F * static_cast<float>(face_blocks)),
         .principal_point = Eigen::Vector2f::Constant(0.5F * static_cast<float>(face_blocks))};
+    image.has_radial_range = true;
     std::vector<Return> returns;
     for (const Vector3f& point : scan.points) {
       if (const auto hit = image.projection.project(point)) {

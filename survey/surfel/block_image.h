@@ -80,6 +80,8 @@ struct Block {
 struct BlockImage {
   BlockProjection projection;
   std::vector<Block> blocks;
+  /// Whether the sensor's range is limited along the ray rather than along the optical axis.
+  bool has_radial_range = false;
 
   /// Returns the ray density [rays per m^2] on a surface that the returns of `block` hit at the
   /// given cosine of incidence.

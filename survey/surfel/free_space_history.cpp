@@ -76,7 +76,8 @@ void FreeSpaceHistory::add(const BlockImage& image, float noise) {
                    std::vector<float>(count, -infinity),
                    count_++,
                    0.0F,
-                   compute_centre(image)};
+                   compute_centre(image),
+                   image.has_radial_range};
   for (std::size_t i = 0; i < count; ++i) {
     const Block& block = image.blocks[i];
     if (block.returns == 0) {
@@ -120,12 +121,18 @@ void FreeSpaceHistory::count_misses(const DepthImage& image,
                                     std::span<const Eigen::Vector3f> normals) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto hit = image.projection.project(points[i]);
-    if (!hit || hit->depth > image.farthest) continue;
+    if (!hit || hit->depth > image.farthest || !is_in_range(image, points[i], hit->depth)) continue;
     const Eigen::Vector3f ray = (points[i] - image.projection.sensor_position).normalized();
     if (std::abs(ray.dot(normals[i])) < min_hit_cosine) continue;
     ++visible_points_;
     if (image.empty_before[hit->block] == infinity) ++points_missed_;
   }
+}
+
+bool FreeSpaceHistory::is_in_range(const DepthImage& image, const Eigen::Vector3f& point,
+                                   float depth) const {
+  return range_.contains(image.has_radial_range ? (point - image.projection.sensor_position).norm()
+                                                : depth);
 }
 
 template <typename IsMissTrusted>
@@ -137,12 +144,14 @@ SpaceState FreeSpaceHistory::query(const Eigen::Vector3f& point, std::size_t fir
     const auto hit = image.projection.project(point);
     if (!hit) continue;
     const float empty_before = image.empty_before[hit->block];
-    if (hit->depth < empty_before && (empty_before < infinity || is_miss_trusted(image))) {
+    const bool is_returned = empty_before < infinity;
+    if (hit->depth < empty_before &&
+        (is_returned || (is_in_range(image, point, hit->depth) && is_miss_trusted(image)))) {
       return SpaceState::empty;
     }
     if (hit->depth <= image.measured_until[hit->block]) {
       state = SpaceState::measured;
-    } else if (state == SpaceState::outside) {
+    } else if (state == SpaceState::outside && is_in_range(image, point, hit->depth)) {
       state = SpaceState::hidden;
     }
   }

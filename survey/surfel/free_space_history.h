@@ -14,7 +14,7 @@
 namespace skycap::survey::surfel {
 
 enum class SpaceState {
-  outside,   ///< outside all images
+  outside,   ///< outside all images, or beyond the range of the sensor
   hidden,    ///< inside an image, but behind the measured surface in all of them
   measured,  ///< on a measured surface, within the tolerance
   empty,     ///< at least one scan saw through it
@@ -24,6 +24,14 @@ enum class SpaceState {
 inline bool is_unknown(SpaceState state) {
   return state == SpaceState::outside || state == SpaceState::hidden;
 }
+
+/// Distances at which a surface returns: along the optical axis of a pinhole image, along the ray
+/// for a scan on cube faces [m].
+struct MeasurableRange {
+  float min = 0.0F, max = std::numeric_limits<float>::infinity();
+
+  bool contains(float distance) const { return min <= distance && distance <= max; }
+};
 
 /// Stores one depth image per scan up to `max_bytes`. Beyond that, evicts the image most similar
 /// to a newer one, so that memory and query time are bounded for surveys of any length. A query
@@ -35,10 +43,15 @@ class FreeSpaceHistory {
   static constexpr std::size_t usual_size = std::size_t{128} << 20;
 
   /// `tolerance` is the depth range of a measured surface [m]. With `misses_are_empty`, a ray
-  /// without a return proves free space if its neighbours have no return either; otherwise it
-  /// proves nothing. `max_bytes` limits the size of the images; the newest image is always kept.
-  FreeSpaceHistory(float tolerance, bool misses_are_empty, std::size_t max_bytes = usual_size)
-      : tolerance_(tolerance), misses_are_empty_(misses_are_empty), max_bytes_(max_bytes) {}
+  /// without a return proves free space within `range` if its neighbours have no return either;
+  /// otherwise it proves nothing. `max_bytes` limits the size of the images; the newest image is
+  /// always kept.
+  FreeSpaceHistory(float tolerance, bool misses_are_empty, MeasurableRange range = {},
+                   std::size_t max_bytes = usual_size)
+      : tolerance_(tolerance),
+        misses_are_empty_(misses_are_empty),
+        range_(range),
+        max_bytes_(max_bytes) {}
 
   /// Adds the image of a scan. `noise` is the standard deviation along the ray [m], which is not
   /// treated as relief.
@@ -79,6 +92,7 @@ class FreeSpaceHistory {
     std::size_t number;
     float farthest = 0.0F;          ///< maximum depth of a return [m]
     Eigen::Vector3f middle;         ///< centre of the imaged volume, on the optical axis
+    bool has_radial_range;          ///< as in BlockImage
     std::size_t closest_newer = 0;  ///< number of the most similar newer image
     float unlikeness = std::numeric_limits<float>::infinity();  ///< dissimilarity of the two images
 
@@ -91,10 +105,13 @@ class FreeSpaceHistory {
   template <typename IsMissTrusted>
   SpaceState query(const Eigen::Vector3f& point, std::size_t first,
                    IsMissTrusted is_miss_trusted) const;
+  /// Returns whether the sensor would have measured a surface at this position.
+  bool is_in_range(const DepthImage& image, const Eigen::Vector3f& point, float depth) const;
   static bool shows_empty(const DepthImage& image, const Eigen::Vector3f& centre, float radius);
 
   float tolerance_;
   bool misses_are_empty_;
+  MeasurableRange range_;
   std::size_t max_bytes_;
   std::vector<DepthImage> images_;  ///< newest last
   std::size_t count_ = 0, bytes_ = 0;

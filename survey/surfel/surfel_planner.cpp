@@ -84,7 +84,9 @@ struct SurfelPlanner::Impl {
     min_jump = jump;
     blocks.jump = static_cast<float>(std::max(min_jump, unknown_noise_jump * extent));
     map.emplace(static_cast<float>(h), config.threads);
-    space.emplace(static_cast<float>(0.6 * h), config.misses_are_empty);
+    space.emplace(static_cast<float>(0.6 * h), config.misses_are_empty,
+                  MeasurableRange{.min = static_cast<float>(camera.config().min_range),
+                                  .max = static_cast<float>(camera.config().max_range)});
     coverage_model.emplace(config.coverage_radius, with_pose_errors({}), ray_spacing(camera));
     predicted.emplace(PredictedSurfaceSettings{
         .steps = config.ablation.surface_prediction ? config.continuation_steps : 0,

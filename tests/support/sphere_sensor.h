@@ -17,7 +17,7 @@ struct Sphere {
   double radius = 0.5;
 };
 
-/// Returns the scan of a depth camera of some spheres, with or without noise.
+/// Returns the scan of a depth camera of some spheres within its range, with or without noise.
 inline geometry::Scan scan_spheres(const std::vector<Sphere>& spheres,
                                    const geometry::Camera& camera, const geometry::View& view,
                                    double sigma = 0.0, std::uint64_t seed = 1) {
@@ -38,7 +38,8 @@ inline geometry::Scan scan_spheres(const std::vector<Sphere>& spheres,
         const double distance = -b - std::sqrt(discriminant);
         if (distance > 0.0) nearest = std::min(nearest, distance);
       }
-      if (!std::isfinite(nearest)) continue;
+      const double depth = nearest * direction.dot(scan.world_from_sensor.linear().col(2));
+      if (!(depth >= camera.config().min_range && depth <= camera.config().max_range)) continue;
       Eigen::Vector3d point = view.position + nearest * direction;
       for (int axis = 0; axis < 3; ++axis) point[axis] += sigma * noise(random);
       scan.points.push_back(point.cast<float>());

@@ -21,7 +21,7 @@ constexpr float tolerance = 0.01F;
 surfel::FreeSpaceHistory make_history(
     const std::vector<Vector3d>& viewpoints, double sigma, bool misses_are_empty,
     std::size_t max_bytes = surfel::FreeSpaceHistory::usual_size) {
-  surfel::FreeSpaceHistory history(tolerance, misses_are_empty, max_bytes);
+  surfel::FreeSpaceHistory history(tolerance, misses_are_empty, {}, max_bytes);
   std::uint64_t seed = 1;
   for (const Vector3d& viewpoint : viewpoints) {
     const geometry::Scan scan =
@@ -76,6 +76,28 @@ TEST(FreeSpaceHistory, MarksNoReturnRaysAsEmptyOnlyWhenConfigured) {
   const surfel::FreeSpaceHistory history = make_history({{2, 0, 0}}, 0.0, true);
   EXPECT_EQ(history.query({1.0F, 0, 0.35F}), surfel::SpaceState::empty);
   EXPECT_FALSE(history.is_verified_empty({1.0F, 0, 0.35F}, 0.02F));
+}
+
+// Beyond the range, a ray without a return proves nothing, and nothing is hidden.
+TEST(FreeSpaceHistory, KnowsNothingBeyondTheRange) {
+  const geometry::View view = geometry::look_at({2, 0, 0}, {0, 0, 0});
+  for (const bool has_radial_range : {false, true}) {
+    surfel::FreeSpaceHistory history(tolerance, true, {.min = 0.2F, .max = 2.0F});
+    surfel::BlockImage image = surfel::make_block_image(tests::scan_spheres(ball, camera, view),
+                                                        camera, {.block_px = 4, .jump = 0.1F});
+    image.has_radial_range = has_radial_range;
+    history.add(image, 0.0F);
+    EXPECT_EQ(history.query({0.1F, 0.55F, 0}), surfel::SpaceState::empty);
+    EXPECT_EQ(history.query({-0.1F, 0.9F, 0}), surfel::SpaceState::outside);
+    EXPECT_EQ(history.query({1.9F, 0.05F, 0}), surfel::SpaceState::outside);  // too near
+    EXPECT_EQ(history.query({1.9F, 0, 0}), surfel::SpaceState::empty);        // before a return
+    EXPECT_EQ(history.query({1.0F, 0, 0}), surfel::SpaceState::empty);
+    EXPECT_EQ(history.query({0.2F, 0, 0}), surfel::SpaceState::hidden);
+    EXPECT_EQ(history.query({-0.2F, 0, 0}), surfel::SpaceState::outside);
+    // The depth is less than the range, the distance is more.
+    EXPECT_EQ(history.query({0.05F, 0.9F, 0}),
+              has_radial_range ? surfel::SpaceState::outside : surfel::SpaceState::empty);
+  }
 }
 
 /// Returns points next to the ball, on no-return rays of a sensor at (2, 0, 0), closer than some of

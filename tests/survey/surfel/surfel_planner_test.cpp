@@ -37,11 +37,12 @@ struct Flight {
 
 /// Flies until the planner stops or `max_views` views have been taken.
 Flight fly(surfel::SurfelPlanner& planner, const std::vector<tests::Sphere>& scene, double sigma,
-           std::size_t max_views = 40, bool is_organised = true) {
-  Flight flight{{start}};
-  for (std::optional<View> next = start; next;) {
+           std::size_t max_views = 40, bool is_organised = true,
+           const geometry::Camera& sensor = camera, const View& first = start) {
+  Flight flight{{first}};
+  for (std::optional<View> next = first; next;) {
     geometry::Scan scan =
-        tests::scan_spheres(scene, camera, *next, sigma, 100 + flight.views.size());
+        tests::scan_spheres(scene, sensor, *next, sigma, 100 + flight.views.size());
     if (!is_organised) scan.pixels.clear();
     next = planner.next_view(scan);
     if (!next || flight.views.size() == max_views) break;
@@ -94,6 +95,19 @@ TEST_P(SurfelPlannerWithNoise, CoversSceneAndStops) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Sigmas, SurfelPlannerWithNoise, testing::Values(0.0, 0.01, 0.03));
+
+// A ray without a return says nothing about surface beyond the range of the sensor.
+TEST(SurfelPlanner, CoversSceneLargerThanTheRange) {
+  const std::vector<tests::Sphere> large_ball = {{.radius = 1.5}};
+  const geometry::Camera sensor({.width = 212, .height = 120, .max_range = 2.06});
+  surfel::SurfelPlanner planner(small_config(), sensor);
+  const Flight flight =
+      fly(planner, large_ball, 0.0, 80, true, sensor, geometry::look_at({3.5, 0, 0}, {0, 0, 0}));
+  EXPECT_EQ(planner.stop(), surfel::SurfelStop::little_gain);
+  const double coverage = true_coverage(planner, large_ball, 0.02);
+  EXPECT_GT(coverage, 0.95);
+  EXPECT_NEAR(planner.predicted_coverage(), coverage, 0.05);
+}
 
 // Surface observed en route need not be observed again.
 TEST(SurfelPlanner, UsesEnRouteScans) {
