@@ -35,7 +35,8 @@ using support::yaml_quoted;
 
 struct InitOptions {
   std::string target;  ///< mesh file, builtin:NAME, model:NAME, or "room"
-  std::string sensor = "intel_d435", vehicle = "none";
+  std::string sensor;  ///< empty: by the size of the target
+  std::string vehicle = "none";
   std::optional<double> gsd;                   ///< ground sampling distance of a photo camera [m]
   std::vector<double> size = {6.0, 4.0, 2.8};  ///< dimensions of a room [m]
   fs::path out = "mission.yaml";
@@ -48,6 +49,7 @@ struct InitOptions {
 struct Proposal {
   AlignedBox3d target;  ///< bounding box in the mission frame
   double coverage_distance = 0.0, view_distance = 0.0, clearance = 0.0;
+  double unknown_margin = 0.0;  ///< distance from the target to the edge of the unknown space
   config::SensorDescription sensor;
 };
 
@@ -80,13 +82,17 @@ AlignedBox3d make_target_box(const InitOptions& options) {
   return {-half, half + options.size[2] * Vector3d::UnitZ()};
 }
 
-/// Returns the maximum range in which the sensor is accurate [m].
+/// Returns the maximum range of the sensor [m].
 double max_range(const config::SensorDescription& sensor) {
-  if (sensor.useful_range) return sensor.useful_range->max;
   if (const auto* camera = std::get_if<sim::DepthCameraConfig>(&sensor.sensor)) {
     return camera->camera.max_range;
   }
   return std::get<sim::LidarConfig>(sensor.sensor).max_range;
+}
+
+/// Returns the maximum range in which the sensor is accurate [m].
+double max_accurate_range(const config::SensorDescription& sensor) {
+  return sensor.useful_range ? sensor.useful_range->max : max_range(sensor);
 }
 
 /// Returns the clearance [m]: vehicle radius, errors and a margin, rounded up to a multiple of 0.5
@@ -121,19 +127,36 @@ std::vector<AlignedBox3d> around_column(const Proposal& proposal) {
   return boxes;
 }
 
+/// Sets the margin of the unknown space, and the view distance such that the first view can be
+/// outside of it.
+void set_distances_of_flight(Proposal& proposal, const InitOptions& options) {
+  constexpr double max_view_distance = 25.0, min_margin = 1.0, reserve = 0.5;
+  const auto min_distance = [&](double margin) { return margin + proposal.clearance + reserve; };
+  const double usual_margin = std::ceil(proposal.clearance + 1.0);
+  const double distance = std::min(proposal.view_distance, max_view_distance);
+  proposal.unknown_margin = distance < min_distance(usual_margin) ? min_margin : usual_margin;
+  proposal.view_distance = std::max(distance, min_distance(proposal.unknown_margin));
+  if (proposal.view_distance > max_range(proposal.sensor)) {
+    throw Error(ErrorKind::bad_usage,
+                fmt::format("--sensor {}: its range of {:g} m is too short for {}, which needs "
+                            "views from {:g} m or more; choose a sensor with a longer range",
+                            options.sensor, max_range(proposal.sensor), options.vehicle,
+                            proposal.view_distance));
+  }
+}
+
 Proposal proposal_for(const InitOptions& options) {
   Proposal proposal{.target = make_target_box(options),
                     .sensor = config::find_sensor(options.sensor)};
   const double side = proposal.target.sizes().maxCoeff();
   const double share = proposal.sensor.useful_range ? 0.9 : 0.5;
-  const double farthest = share * max_range(proposal.sensor);
+  const double farthest = share * max_accurate_range(proposal.sensor);
   proposal.coverage_distance = rounded(side / (options.is_room() ? 300.0 : 200.0));
   proposal.view_distance = rounded(std::min(options.is_room() ? 0.3 * side : side, farthest));
   if (!options.has_vehicle()) return proposal;
   proposal.clearance = compute_default_clearance(options.vehicle);
   if (!options.is_room()) {
-    proposal.view_distance =
-        std::clamp(proposal.view_distance, rounded(1.5 * proposal.clearance), 25.0);
+    set_distances_of_flight(proposal, options);
   } else if (proposal.target.sizes().minCoeff() <= 2.0 * proposal.clearance ||
              around_column(proposal).empty()) {
     throw Error(ErrorKind::bad_usage,
@@ -172,6 +195,20 @@ std::string sensor_text(const InitOptions& options, const Proposal& proposal) {
     return fmt::format("sensor:\n  lidar: {}  # {}\n", yaml_quoted(options.sensor),
                        proposal.sensor.name);
   }
+  if (fs::path(options.sensor).extension() != ".yaml") {
+    const std::string useful =
+        proposal.sensor.useful_range
+            ? fmt::format(", accurate from {:g} to {:g} m", proposal.sensor.useful_range->min,
+                          proposal.sensor.useful_range->max)
+            : "";
+    std::string text = fmt::format("sensor:\n  preset: {}  # {}{}\n", options.sensor,
+                                   proposal.sensor.name, useful);
+    if (options.is_room() && proposal.sensor.useful_range) {
+      text += fmt::format("  max_range: {:g}  # metres; farther measurements are ignored\n",
+                          max_accurate_range(proposal.sensor));
+    }
+    return text;
+  }
   const double degree = geometry::radians_per_degree;
   return fmt::format(
       "sensor:  # {}\n"
@@ -184,7 +221,7 @@ std::string sensor_text(const InitOptions& options, const Proposal& proposal) {
       proposal.sensor.name, camera->camera.width, camera->camera.height,
       camera->camera.horizontal_fov / degree, camera->camera.vertical_fov / degree,
       proposal.sensor.useful_range ? proposal.sensor.useful_range->min : camera->camera.min_range,
-      max_range(proposal.sensor));
+      max_accurate_range(proposal.sensor));
 }
 
 std::string planner_text(const InitOptions& options, const Proposal& proposal) {
@@ -197,16 +234,16 @@ std::string planner_text(const InitOptions& options, const Proposal& proposal) {
   return fmt::format(
       "planner:\n"
       "  name: skycap\n"
+      "  preset: building  # for scenes of any size; paper: the values of the SEE++ paper\n"
       "  scene_box: {}  # region of interest{}\n"
       "  view_distance: {:g}  # metres from a view to the surface\n"
       "  density: {:.3g}  # required points per cubic metre\n"
       "  resolution_radius: {:g}  # metres, in which points are counted\n"
-      "  spacing: {:g}  # metres, minimum distance of stored points\n"
       "evaluation:\n"
       "  coverage_distance: {:g}  # metres; a surface point with a measurement within this "
       "distance is covered\n",
       box_text(scene), options.is_room() ? "" : ", without the ground", proposal.view_distance,
-      0.36 / (distance * distance), 3.0 * distance, 0.5 * distance, distance);
+      0.36 / (distance * distance), 3.0 * distance, distance);
 }
 
 std::string limits_text(const InitOptions& options, const Proposal& proposal) {
@@ -253,9 +290,8 @@ std::string flight_text(const InitOptions& options, const Proposal& proposal) {
   if (!options.has_vehicle()) return "";
   AlignedBox3d unknown = proposal.target;
   if (!options.is_room()) {
-    const double margin = std::ceil(proposal.clearance + 1.0);
-    unknown.min().head<2>().array() -= margin;
-    unknown.max().array() += margin;
+    unknown.min().head<2>().array() -= proposal.unknown_margin;
+    unknown.max().array() += proposal.unknown_margin;
     unknown.min().z() = 0.0;
   }
   const bool is_file = fs::path(options.vehicle).extension() == ".yaml";
@@ -273,13 +309,28 @@ std::string flight_text(const InitOptions& options, const Proposal& proposal) {
     const double height = 0.5 * proposal.target.sizes().z();
     text += fmt::format(
         "  takeoff: [0, 0, 0]  # take-off and landing point\n"
-        "  takeoff_climb: {:.4g}  # metres straight up before the first leg\n"
-        "start:  # pose of the first scan\n"
-        "  position: {}\n"
-        "  direction: [1, 0, 0]\n",
-        height, vector_text({0.0, 0.0, height}));
+        "  takeoff_climb: {:.4g}  # metres straight up before the first leg\n",
+        height);
   }
   return text;
+}
+
+/// Returns the pose of the first scan: above the take-off point of a room, or in front of the
+/// middle of the longer side of a model.
+std::string start_text(const InitOptions& options, const Proposal& proposal) {
+  if (options.is_room() && !options.has_vehicle()) return "";
+  const AlignedBox3d& target = proposal.target;
+  Vector3d position = target.center(), direction = Vector3d::UnitX();
+  std::string remark;
+  if (!options.is_room()) {
+    const int axis = target.sizes().x() < target.sizes().y() ? 0 : 1;
+    direction = Vector3d::Unit(axis);
+    position[axis] = target.min()[axis] - proposal.view_distance;
+    position.z() = std::max(position.z(), target.min().z() + proposal.clearance + 0.1);
+    remark = "; without this section it depends on the seed";
+  }
+  return fmt::format("start:  # pose of the first scan{}\n  position: {}\n  direction: {}\n",
+                     remark, vector_text(position), vector_text(direction));
 }
 
 /// Mission with a photo camera for a mesh file.
@@ -330,13 +381,29 @@ std::string photo_mission_text(const InitOptions& options) {
                                     : yaml_quoted(options.sensor));
 }
 
-std::string survey_mission_text(const InitOptions& options) {
+std::string survey_mission_text(const InitOptions& options, const Console& console) {
   const Proposal proposal = proposal_for(options);
+  if (proposal.view_distance > max_accurate_range(proposal.sensor)) {
+    console.err << fmt::format(
+        "skycap: warning: {} is accurate up to {:g} m only, but the views are {:g} m from the "
+        "target; choose a sensor with a longer range\n",
+        options.sensor, max_accurate_range(proposal.sensor), proposal.view_distance);
+  }
   return head_text(options) + sensor_text(options, proposal) + planner_text(options, proposal) +
-         limits_text(options, proposal) + flight_text(options, proposal);
+         limits_text(options, proposal) + flight_text(options, proposal) +
+         start_text(options, proposal);
 }
 
-int init(const InitOptions& options, const Console& console) {
+/// Returns the sensor for a target: a LiDAR if the range of a D435 is too short.
+std::string default_sensor(const InitOptions& options) {
+  constexpr double max_side_of_d435 = 5.0;
+  if (options.is_room() || options.gsd) return "intel_d435";
+  const double side = make_target_box(options).sizes().maxCoeff();
+  return side > max_side_of_d435 ? "ouster_os1_64" : "intel_d435";
+}
+
+int init(const InitOptions& given, const Console& console) {
+  InitOptions options = given;
   if (options.out.extension() != ".yaml" && options.out.extension() != ".yml") {
     throw Error(ErrorKind::bad_usage, "--out must end in .yaml");
   }
@@ -344,12 +411,14 @@ int init(const InitOptions& options, const Console& console) {
     throw Error(ErrorKind::bad_usage,
                 options.out.string() + " already exists; choose another --out or remove the file");
   }
+  if (options.sensor.empty()) options.sensor = default_sensor(options);
   if (!options.gsd && wizard::is_photo_camera(options.sensor)) {
     throw Error(ErrorKind::bad_usage, "--sensor " + options.sensor +
                                           " is a photo camera and requires a ground sampling "
                                           "distance; set --gsd, such as --gsd 0.005");
   }
-  const std::string text = options.gsd ? photo_mission_text(options) : survey_mission_text(options);
+  const std::string text =
+      options.gsd ? photo_mission_text(options) : survey_mission_text(options, console);
   config::parse_mission(text, options.out.string());  // throws if values conflict
   geometry::write_file(options.out, text);
   console.out << options.out.string() << ": mission for " << options.target << "; next: skycap "
@@ -370,10 +439,10 @@ void add_init(CLI::App& app, const Console& console, Action& action) {
       ->add_option("target", options->target,
                    "Mesh file, builtin:NAME, model:NAME, or room for a live survey")
       ->required();
-  command->add_option("--sensor", options->sensor,
-                      "Sensor preset (skycap presets) or description NAME.yaml (default: "
-                      "intel_d435). A photo camera "
-                      "requires --gsd");
+  command->add_option(
+      "--sensor", options->sensor,
+      "Sensor preset (skycap presets) or description NAME.yaml (default: intel_d435, for "
+      "models longer than 5 m ouster_os1_64). A photo camera requires --gsd");
   command
       ->add_option("--gsd", options->gsd,
                    "Ground sampling distance of a photo camera in metres; creates a photo mission")

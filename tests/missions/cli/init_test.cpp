@@ -37,6 +37,50 @@ TEST(Init, WritesMissionAcceptedByCheck) {
   EXPECT_EQ(check.exit_code, 0) << check.out << check.err;
 }
 
+// The first view sees the target from outside the unknown space, whatever its shape.
+TEST(Init, WritesMissionsThatCanBeSurveyed) {
+  const tests::TestFolder folder;
+  const std::string house = folder / "house.obj", slab = folder / "slab.obj";
+  std::ofstream(house) << testing_support::make_obj({.low = {-5, -5, 0}});
+  std::ofstream(slab) << testing_support::make_obj({.low = {-30, -4, 0}, .size = {60, 8, 12}});
+  std::size_t number = 0;
+  for (const std::string& target : {house, slab, std::string("builtin:teapot")}) {
+    for (const std::string sensor : {"intel_d435", "see_high_resolution", "ouster_os1_64"}) {
+      for (const std::string vehicle : {"none", "generic", "mavic_3e"}) {
+        const std::string mission = folder / (std::to_string(number++) + ".yaml");
+        const auto made = run_skycap(
+            {"init", target, "--sensor", sensor, "--vehicle", vehicle, "--out", mission});
+        ASSERT_EQ(made.exit_code, 0) << made.err;
+        const auto check = run_skycap({"check", mission, "--set", "evaluation.attainable_views=0"});
+        EXPECT_EQ(check.exit_code, 0) << target << sensor << vehicle << check.out;
+      }
+    }
+  }
+}
+
+TEST(Init, SelectsSensorBySize) {
+  const tests::TestFolder folder;
+  const std::string house = folder / "house.obj", mission = folder / "house.yaml",
+                    teapot = folder / "teapot.yaml";
+  std::ofstream(house) << testing_support::make_obj({.low = {-5, -5, 0}});
+  ASSERT_EQ(run_skycap({"init", house, "--out", mission}).exit_code, 0);
+  EXPECT_THAT(read_content(mission), HasSubstr("lidar: \"ouster_os1_64\""));
+  ASSERT_EQ(run_skycap({"init", "builtin:teapot", "--out", teapot}).exit_code, 0);
+  EXPECT_THAT(read_content(teapot), HasSubstr("preset: intel_d435"));
+}
+
+TEST(Init, RejectsSensorTooShortForVehicle) {
+  const tests::TestFolder folder;
+  const std::string sensor =
+      folder.write("short.yaml",
+                   "name: Short\nkind: camera\nwidth_px: 640\nheight_px: 480\n"
+                   "horizontal_fov_deg: 60\nvertical_fov_deg: 45\nrange: {min: 0.2, max: 2}\n");
+  const auto made = run_skycap({"init", "builtin:radcliffe-camera", "--sensor", sensor, "--vehicle",
+                                "mavic_3e", "--out", folder / "m.yaml"});
+  EXPECT_EQ(made.exit_code, 2);
+  EXPECT_THAT(made.err, HasSubstr("choose a sensor with a longer range"));
+}
+
 TEST(Init, WritesMissionsForEverySensorAndVehicle) {
   const tests::TestFolder folder;
   std::size_t number = 0;
