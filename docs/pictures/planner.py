@@ -93,9 +93,9 @@ def surfel(svg, x, y, angle, size, colour, dash=None, normal=None):
 def predicted_surface():
     """Draws the patches k = 0, 1, 2 to scale, with the offsets and edges of the formulas."""
     h = 18.0
-    svg = Svg(900, 420, "Predicted surface", "Patches straight on, over an edge, up a step, and on the back of a thin object.")
+    svg = Svg(900, 420, "Predicted surface", "Patches straight ahead, over an edge, up a step, and on the back of a thin object.")
     svg.text(30, 34, "Where the measured surface ends, four kinds of patches are predicted", 14, "ink", bold=True)
-    kinds = (("straight on", "at 1.6 h 2^k u"), ("over an edge", "at 1.1 h (u - 2^k n), facing u"),
+    kinds = (("straight ahead", "at 1.6 h 2^k u"), ("over an edge", "at 1.1 h (u - 2^k n), facing u"),
              ("up a step", "at 1.1 h (u + 2^k n), facing -u"), ("back of a thin object", "at -h (2^k - 1) u - 1.1 h n"))
     for column, (title, note) in enumerate(kinds):
         left = 24 + 218 * column
