@@ -9,7 +9,12 @@ std::vector<config::KeyOverride> KeyOptions::overrides() const {
   const auto add = [&](const char* option, const char* key, const std::string& value) {
     if (!value.empty()) all.push_back({option, key, value});
   };
-  add("--planner", "planner.name", planner);
+  if (planner.ends_with(".so") || planner.ends_with(".py")) {
+    add("--planner", "planner.name", "external");
+    add("--planner", "planner.file", std::filesystem::absolute(planner).string());
+  } else {
+    add("--planner", "planner.name", planner);
+  }
   add("--seed", "seed", seed);
   add("--threads", "threads", threads);
   add("--max-views", "limits.max_views", max_views);
