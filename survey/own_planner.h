@@ -1,6 +1,6 @@
 /// Interface for planners of users in shared libraries. The header has no dependency on a compiled
-/// library of Skycap: a planner is compiled with its include folder only. Missions cannot select
-/// such a planner yet.
+/// library of Skycap: a planner is compiled with its include folder only.
+/// docs/howto/write-a-planner.md has examples.
 ///
 /// The library must be built with a compiler whose C++ interface is compatible with that of the
 /// program, and with the headers of the same minor version.

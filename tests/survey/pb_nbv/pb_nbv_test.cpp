@@ -291,8 +291,14 @@ TEST(Score, UsesOrderAsRankInReleasedReading) {
                    areas[0] / 2.0 + areas[1] / 4.0 + areas[2]);
 }
 
+/// Returns settings with few voxels, candidates and ellipsoids, so that the tests are fast under
+/// sanitizers.
 PbNbvConfig quick_config() {
   PbNbvConfig config;
+  config.settings.voxel = 0.1;
+  config.settings.candidates = 200;
+  config.settings.parallels = 12;
+  config.settings.max_ellipsoids = 6;
   config.view_distance = 1.5;
   config.spacing = 0.02;
   config.seed = 7;
