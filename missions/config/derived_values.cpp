@@ -214,13 +214,11 @@ survey::external::ExternalConfig external_config(const MissionDocument& document
                                                  const survey::PlannerOptions& planner) {
   survey::external::ExternalConfig config;
   config.file = document.planner.file.value_or("");
-  const auto location = document.locations.find("planner.file");
-  config.make = [file = config.file, is_by_user = document.planner.is_file_by_user,
-                 source = location == document.locations.end() ? "" : location->second](
+  config.make = [file = config.file, is_by_user = document.planner.is_file_by_user](
                     const survey::OwnPlannerTask& task) {
     if (!is_by_user) {
       throw Error(ErrorKind::bad_config,
-                  source + ": planner.file (" + file +
+                  "planner.file (" + file +
                       ") is code and is executed only if the command line names it; inspect the "
                       "file and add --set planner.file=" +
                       file);
