@@ -170,7 +170,7 @@ def section_of(row):
 
 # Keys of the section planner that are not specific to SEE and SEE++, and ablation switches.
 COMMON_KEYS = re.compile(
-    r"\| `planner\.(name|preset|goal|density|resolution_radius|spacing|view_distance|scene_box\.\w+"
+    r"\| `planner\.(name|file|preset|goal|density|resolution_radius|spacing|view_distance|scene_box\.\w+"
     r"|wanted_coverage|target_coverage|least_gain|min_gain)`")
 ABLATION_KEYS = re.compile(r"\| `planner\.(ideas|ablation)\.")
 

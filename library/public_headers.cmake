@@ -18,6 +18,7 @@ set(public_headers
   sim/sensors/lidar.h
   sim/sensors/sensor.h
   sim/sensors/trajectory.h
+  survey/own_planner.h
   survey/planner.h
   survey/see/see.h
   survey/surfel/surfel_planner.h

@@ -35,6 +35,7 @@ struct PlanningStep {
   std::size_t frontiers_resolved = 0;   ///< frontiers that this scan resolved
   std::optional<bool> target_resolved;  ///< whether the frontier of the proposed view was resolved
   std::vector<PartTime> times;          ///< in order of execution; the sum is the planning time [s]
+  double processor_time_elsewhere = 0.0;  ///< processor time of other processes [s]
 };
 
 /// Thrown by a planner when a stop request ends the search for a view.

@@ -72,6 +72,7 @@ std::optional<View> SurveyStepper::add_scan(const geometry::Scan& scan, double s
   }
   std::optional<View> next = planned(surveyed_view, [&] { return planner_.next_view(scan); });
   surveyed_view.step = planner_.last_step();
+  surveyed_view.planning_processor_time += surveyed_view.step.processor_time_elsewhere;
   record_remainder(surveyed_view, "rest");
   if (std::optional<View> given = next_initial_view(surveyed_view)) {
     next = std::move(given);

@@ -12,7 +12,7 @@ namespace {
 std::vector<config::KeyOverride> make_overrides(const std::vector<Setting>& settings) {
   std::vector<config::KeyOverride> overrides;
   for (const Setting& setting : settings) {
-    overrides.push_back({"setting " + setting.key, setting.key, setting.value});
+    overrides.push_back({"setting " + setting.key, setting.key, setting.value, true});
   }
   return overrides;
 }

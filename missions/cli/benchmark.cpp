@@ -15,6 +15,7 @@
 #include "missions/batch/benchmark/benchmark_report.h"
 #include "missions/batch/benchmark/methods.h"
 #include "missions/batch/benchmark/other_results.h"
+#include "missions/batch/benchmark/uniform_comparison.h"
 #include "missions/cli/commands.h"
 #include "missions/cli/survey_batch.h"
 #include "missions/cli/write_page.h"
@@ -36,7 +37,21 @@ struct Entry {
   /// Setup of each trial; shared, or one per generated scene.
   std::vector<std::shared_ptr<batch::Setup>> setups;
   std::vector<std::optional<batch::Trial>> trials;
+  std::optional<std::size_t> set_views = {};  ///< number of views of a fixed set
 
+  std::string folder_name() const {
+    return set_views ? fmt::format("{}_{}", method->name, *set_views) : method->name;
+  }
+  bool is_finished() const {
+    return std::ranges::all_of(trials, [](const auto& trial) { return trial.has_value(); });
+  }
+  batch::BenchmarkCell cell() const {
+    batch::BenchmarkCell result{title, method->name, {}, set_views};
+    for (const auto& trial : trials) {
+      if (trial) result.trials.push_back(*trial);
+    }
+    return result;
+  }
   std::uint64_t seed(std::size_t trial) const { return setups[trial]->mission.run.seed + trial; }
 };
 
@@ -115,7 +130,7 @@ std::vector<Entry> make_entries(const BenchmarkOptions& options, const Console& 
 }
 
 fs::path item_file(const fs::path& folder, const Entry& entry, std::uint64_t seed) {
-  return folder / "items" / entry.title / entry.method->name /
+  return folder / "items" / entry.title / entry.folder_name() /
          ("seed_" + std::to_string(seed) + ".json");
 }
 
@@ -134,7 +149,7 @@ std::string manifest(const BenchmarkOptions& options, const std::vector<Entry>& 
     const batch::Setup& first = *entry.setups.front();
     json["entries"].push_back({{"mission", entry.title},
                                {"file", first.file.string()},
-                               {"planner", entry.method->name},
+                               {"planner", entry.folder_name()},
                                {"first_seed", first.mission.run.seed},
                                {"fingerprint", first.fingerprint}});
   }
@@ -174,6 +189,7 @@ class Benchmark {
         console_(console),
         entries_(make_entries(options, console)),
         others_(results_of_others(options, entries_)),
+        fixed_(take_fixed_views(entries_)),
         folder_(options.out.value_or("results/benchmark")),
         runner_("benchmark", console, options.is_quiet, options.threads) {}
 
@@ -181,6 +197,7 @@ class Benchmark {
     run_entries([](const Entry& entry) { return !entry.method->is_volumetric; });
     derive_view_limits_from_see();
     run_entries([](const Entry& entry) { return entry.method->is_volumetric; });
+    run_fixed_views();
     report();
     return is_whole() ? 0 : 1;
   }
@@ -223,25 +240,95 @@ class Benchmark {
     }
   }
 
-  bool is_whole() const {
-    return std::ranges::all_of(entries_, [](const Entry& entry) {
-      return std::ranges::all_of(entry.trials, [](const auto& trial) { return trial.has_value(); });
+  bool is_whole() const { return std::ranges::all_of(entries_, &Entry::is_finished); }
+
+  /// Removes the entries of fixed views, which are templates of their sets.
+  static std::vector<Entry> take_fixed_views(std::vector<Entry>& entries) {
+    std::vector<Entry> fixed;
+    for (const Entry& entry : entries) {
+      if (entry.method->has_fixed_views) fixed.push_back(entry);
+    }
+    std::erase_if(entries, [](const Entry& entry) { return entry.method->has_fixed_views; });
+    return fixed;
+  }
+
+  /// Adds the entry of a fixed set with `views` views, unless it exists or the mission allows fewer
+  /// views. Returns whether it was added.
+  bool add_set(const Entry& fixed, std::size_t views) {
+    const auto is_same = [&](const Entry& entry) {
+      return entry.title == fixed.title && entry.method == fixed.method && entry.set_views == views;
+    };
+    if (std::ranges::any_of(entries_, is_same)) return false;
+    if (views > fixed.setups.front()->mission.survey().limits.max_views) return false;
+    Entry entry{fixed.title, fixed.method, {}, {}, views};
+    entry.trials.resize(fixed.trials.size());
+    std::map<const batch::Setup*, std::shared_ptr<batch::Setup>> changed;
+    for (const auto& setup : fixed.setups) {
+      std::shared_ptr<batch::Setup>& own = changed[setup.get()];
+      if (!own) {
+        own = std::make_shared<batch::Setup>(*setup);
+        own->mission = config::with_keys(setup->mission,
+                                         {{"benchmark", "uniform.views", std::to_string(views)}});
+        own->name_kind_and_fingerprint();
+      }
+      entry.setups.push_back(own);
+    }
+    entries_.push_back(std::move(entry));
+    return true;
+  }
+
+  /// Runs the fixed sets: the given numbers of views; for uniform also the mean number of views of
+  /// each planner, and by bisection the least number that reaches its coverage.
+  void run_fixed_views() {
+    const auto run_sets = [&] {
+      run_entries([](const Entry& entry) { return entry.set_views && !entry.is_finished(); });
+    };
+    const auto planners_on = [&](const std::string& title) {
+      std::vector<batch::BenchmarkCell> planners;
+      for (const batch::BenchmarkCell& cell : cells()) {
+        if (cell.mission == title && !cell.set_views && !cell.trials.empty()) {
+          planners.push_back(cell);
+        }
+      }
+      return planners;
+    };
+    for (const Entry& fixed : fixed_) {
+      for (const std::size_t views : options_.set_views) add_set(fixed, views);
+      if (fixed.method->name != "uniform") continue;
+      for (const auto& cell : planners_on(fixed.title)) {
+        add_set(fixed, batch::compute_same_views(cell));
+      }
+    }
+    run_sets();
+    for (bool has_new = true; has_new && is_whole();) {
+      has_new = false;
+      const std::vector<batch::BenchmarkCell> known = cells();
+      for (const Entry& fixed : fixed_) {
+        if (fixed.method->name != "uniform") continue;
+        for (const auto& cell : planners_on(fixed.title)) {
+          const auto views = batch::next_set_views(cell, known);
+          if (views && add_set(fixed, *views)) has_new = true;
+        }
+      }
+      if (has_new) run_sets();
+    }
+  }
+
+  /// Returns the cells of all entries, sets ordered by their number of views, and of others.
+  std::vector<batch::BenchmarkCell> cells() const {
+    std::vector<batch::BenchmarkCell> all;
+    for (const Entry& entry : entries_) all.push_back(entry.cell());
+    std::ranges::stable_sort(all, [](const auto& a, const auto& b) {
+      return a.set_views.value_or(0) < b.set_views.value_or(0);
     });
+    all.insert(all.end(), others_.begin(), others_.end());
+    return all;
   }
 
   void report() {
-    std::vector<batch::BenchmarkCell> cells;
-    for (const Entry& entry : entries_) {
-      batch::BenchmarkCell cell{entry.title, entry.method->name, {}};
-      for (const auto& trial : entry.trials) {
-        if (trial) cell.trials.push_back(*trial);
-      }
-      cells.push_back(std::move(cell));
-    }
-    cells.insert(cells.end(), others_.begin(), others_.end());
     folder_.write("manifest.json", manifest(options_, entries_, is_whole()));
     const std::string markdown =
-        batch::stage_tables(cells, "Benchmark", batch::Times::shown, folder_);
+        batch::stage_tables(cells(), "Benchmark", batch::Times::shown, folder_);
     runner_.clear();
     write_page("results.json", options_.has_report, folder_, console_);
     folder_.commit();
@@ -253,6 +340,7 @@ class Benchmark {
   const Console& console_;
   std::vector<Entry> entries_;
   std::vector<batch::BenchmarkCell> others_;
+  std::vector<Entry> fixed_;  ///< templates of the fixed sets
   geometry::OutputFolder folder_;
   SurveyRunner runner_;
 };

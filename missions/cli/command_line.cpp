@@ -28,10 +28,11 @@
 namespace skycap::missions::cli {
 namespace {
 
-/// Returns a list of all planner names.
+/// Returns a list of all planner names, without that of users' planners.
 std::string planner_list() {
   std::string list;
   for (const survey::PlannerTitle& title : survey::planner_titles) {
+    if (title.name == survey::PlannerName::external) continue;
     list.append(list.empty() ? "" : ", ").append(title.word);
   }
   return list;
@@ -45,7 +46,9 @@ void add_plan(CLI::App& app, const Console& console, Action& action) {
   command->add_option("mission", options->mission, "Mission file (docs/reference/mission-file.md)")
       ->required();
   command->add_option("--out", options->out, "Folder for the results (default: results/NAME)");
-  command->add_option("--planner", keys->planner, planner_list() + "; overrides the mission file");
+  command->add_option(
+      "--planner", keys->planner,
+      planner_list() + ", or a file of your own (.so, .py); overrides the mission file");
   command->add_option("--seed", keys->seed, "Random seed; overrides the mission file");
   command->add_option("--threads", keys->threads, "Number of threads (0: all processors)");
   command->add_option("--max-views", keys->max_views, "Maximum number of views");
@@ -76,7 +79,14 @@ void add_benchmark(CLI::App& app, const Console& console, Action& action) {
   command->add_option("missions", options->missions, "Mission files")->required();
   command
       ->add_option("--planners", options->planners,
-                   "Planners: all (those of the paper) or names such as see++,oa,skycap")
+                   "Planners: all (those of the paper), names such as see++,oa,skycap, or files of "
+                   "your own planners (.so, .py)")
+      ->delimiter(',');
+  command
+      ->add_option("--set-views", options->set_views,
+                   "Numbers of views of the fixed sets of uniform and random (default: "
+                   "5,8,10,12,15,20,25,30,40,60,100)")
+      ->check(CLI::Range(1, 10'000))
       ->delimiter(',');
   command
       ->add_option("--also", options->also,

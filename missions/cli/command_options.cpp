@@ -7,9 +7,14 @@ namespace skycap::missions::cli {
 std::vector<config::KeyOverride> KeyOptions::overrides() const {
   std::vector<config::KeyOverride> all;
   const auto add = [&](const char* option, const char* key, const std::string& value) {
-    if (!value.empty()) all.push_back({option, key, value});
+    if (!value.empty()) all.push_back({option, key, value, true});
   };
-  add("--planner", "planner.name", planner);
+  if (planner.ends_with(".so") || planner.ends_with(".py")) {
+    add("--planner", "planner.name", "external");
+    add("--planner", "planner.file", std::filesystem::absolute(planner).string());
+  } else {
+    add("--planner", "planner.name", planner);
+  }
   add("--seed", "seed", seed);
   add("--threads", "threads", threads);
   add("--max-views", "limits.max_views", max_views);
@@ -20,7 +25,7 @@ std::vector<config::KeyOverride> KeyOptions::overrides() const {
       throw Error(ErrorKind::bad_usage,
                   "--set " + pair + ": missing '='; use KEY=VALUE, for example seed=2");
     }
-    all.push_back({"--set " + pair, pair.substr(0, equals), pair.substr(equals + 1)});
+    all.push_back({"--set " + pair, pair.substr(0, equals), pair.substr(equals + 1), true});
   }
   return all;
 }

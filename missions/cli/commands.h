@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "missions/batch/benchmark/uniform_comparison.h"
 #include "missions/cli/console.h"
 #include "missions/config/mission_reader.h"
 
@@ -94,7 +95,10 @@ struct BenchmarkOptions {
   /// Names from sim::model_families(), or "all". A model of each family replaces the missions'
   /// scene model; each trial's seed generates a different model. Empty: the missions' own models.
   std::vector<std::string> scenes;
-  std::vector<std::filesystem::path> also;   ///< results of other programs (batch/other_results.h)
+  std::vector<std::filesystem::path> also;  ///< results of other programs (batch/other_results.h)
+  /// Numbers of views of the fixed sets of uniform and random.
+  std::vector<std::size_t> set_views{std::begin(batch::default_set_views),
+                                     std::end(batch::default_set_views)};
   std::size_t trials = 10;                   ///< trials per planner and mission
   std::optional<std::filesystem::path> out;  ///< output folder; default: results/benchmark
   std::vector<config::KeyOverride> overrides;

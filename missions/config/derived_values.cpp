@@ -8,9 +8,11 @@
 
 #include "flight/motion/motion.h"
 #include "flight/route/route.h"
+#include "geometry/error.h"
 #include "geometry/pose/camera.h"
 #include "missions/config/photo_rules.h"
 #include "missions/config/photo_shutter.h"
+#include "missions/session/own_planner_loader.h"
 #include "missions/site_data/site_priors.h"
 #include "missions/site_data/surface_points.h"
 #include "sim/sensors/scanner_field.h"
@@ -181,6 +183,56 @@ survey::volumetric::VolumetricConfig volumetric_config(
   return config;
 }
 
+survey::pb_nbv::PbNbvConfig pb_nbv_config(const MissionDocument& document,
+                                          const survey::PlannerOptions& planner) {
+  using survey::pb_nbv::Reading;
+  return {.settings = document.planner.pb_nbv,
+          .reading = planner.name == survey::PlannerName::pb_nbv_released ? Reading::released
+                                                                          : Reading::published,
+          .view_distance = planner.view_distance,
+          .spacing = planner.spacing,
+          .scene_box = planner.scene_box,
+          .limits = planner.limits};
+}
+
+survey::fixed_views::FixedViewsConfig fixed_views_config(const MissionDocument& document,
+                                                         const survey::PlannerOptions& planner) {
+  survey::fixed_views::FixedViewsConfig config{
+      .settings = document.planner.fixed_views,
+      .spacing = planner.spacing,
+      .scene_box = planner.scene_box,
+      .limits = planner.limits,
+      .sphere_centre = document.planner.volumetric.sphere_centre,
+      .sphere_radius = document.planner.volumetric.sphere_radius};
+  if (planner.name == survey::PlannerName::random) {
+    config.settings.set = survey::fixed_views::ViewSet::random;
+  }
+  return config;
+}
+
+survey::external::ExternalConfig external_config(const MissionDocument& document,
+                                                 const survey::PlannerOptions& planner) {
+  survey::external::ExternalConfig config;
+  config.file = document.planner.file.value_or("");
+  config.make = [file = config.file, is_by_user = document.planner.is_file_by_user](
+                    const survey::OwnPlannerTask& task) {
+    if (!is_by_user) {
+      throw Error(ErrorKind::bad_config,
+                  "planner.file (" + file +
+                      ") is code and is executed only if the command line names it; inspect the "
+                      "file and add --set planner.file=" +
+                      file);
+    }
+    return session::load_own_planner(file, task);
+  };
+  config.task = {.seed = 1,
+                 .camera = planner.camera,
+                 .spacing = planner.spacing,
+                 .view_distance = planner.view_distance,
+                 .scene_box = planner.scene_box};
+  return config;
+}
+
 /// Returns the surfaces of the targets as prior surface for the planner, or null without targets.
 std::shared_ptr<const survey::surfel::PriorSurface> prior_surface(
     const site_data::SitePriors& site, const geometry::CameraConfig& camera, double distance) {
@@ -315,10 +367,14 @@ survey::ViewLimits view_limits(const MissionDocument& document) {
 }
 
 std::size_t view_limit(const MissionDocument& document) {
-  const bool is_volumetric = survey::find_title(document.planner.name).metric.has_value();
-  return is_volumetric ? std::min(document.planner.volumetric.view_limit.value_or(usual_view_limit),
-                                  document.limits.options.max_views)
-                       : document.limits.options.max_views;
+  const std::size_t max_views = document.limits.options.max_views;
+  if (survey::find_title(document.planner.name).metric) {
+    return std::min(document.planner.volumetric.view_limit.value_or(usual_view_limit), max_views);
+  }
+  if (survey::is_pb_nbv(document.planner.name)) {
+    return std::min(document.planner.pb_nbv.views, max_views);
+  }
+  return max_views;
 }
 
 bool has_target(const MissionDocument& document) { return has_role(document, Role::target); }
@@ -367,6 +423,12 @@ survey::PlannerOptions planner_options(const MissionDocument& document,
         return prior_surface(*priors, camera, distance);
       };
     }
+  } else if (survey::is_pb_nbv(options.name)) {
+    options.method = pb_nbv_config(document, options);
+  } else if (survey::has_fixed_views(options.name)) {
+    options.method = fixed_views_config(document, options);
+  } else if (options.name == survey::PlannerName::external) {
+    options.method = external_config(document, options);
   } else {
     survey::see::SeeConfig see = see_config(document);
     see.min_height = min_view_height(document);

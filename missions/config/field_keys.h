@@ -70,6 +70,16 @@ inline constexpr auto field_keys = std::to_array<FieldKey>({
     {"rays.rays_per_pixel", "volumetric.rays_per_pixel"},
     {"rays.window_begin", "volumetric.window_begin"},
     {"rays.window_end", "volumetric.window_end"},
+    // survey::fixed_views::FixedViewsConfig
+    {"uniform.views", "uniform.views"},
+    {"uniform.rings", "uniform.rings"},
+    // survey::pb_nbv::PbNbvConfig
+    {"pb_nbv.candidates", "pb_nbv.candidates"},
+    {"pb_nbv.parallels", "pb_nbv.parallels"},
+    {"pb_nbv.sectors", "pb_nbv.sectors"},
+    {"pb_nbv.growth", "pb_nbv.growth"},
+    {"pb_nbv.voxel", "pb_nbv.voxel"},
+    {"pb_nbv.working_distance", "pb_nbv.working_distance"},
     // sim::NavigationErrors
     {"navigation.horizontal_sigma", "scan.navigation.horizontal_sigma"},
     {"navigation.vertical_sigma", "scan.navigation.vertical_sigma"},

@@ -203,11 +203,12 @@ std::vector<FormerName> replace_former_batch_names(YamlNode& node, const std::st
 
 std::vector<FormerName> former_names_in(std::span<const KeyOverride> overrides) {
   std::vector<FormerName> names;
-  for (const auto& [origin, path, value] : overrides) {
-    const std::string current = current_path(path);
-    if (current != path) names.push_back({1, path, current});
-    YamlNode node = support::parse_yaml(value, origin);
-    std::ranges::move(replace_former_names(node, current, origin), std::back_inserter(names));
+  for (const KeyOverride& change : overrides) {
+    const std::string current = current_path(change.path);
+    if (current != change.path) names.push_back({1, change.path, current});
+    YamlNode node = support::parse_yaml(change.value, change.origin);
+    std::ranges::move(replace_former_names(node, current, change.origin),
+                      std::back_inserter(names));
   }
   return names;
 }

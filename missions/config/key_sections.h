@@ -15,6 +15,8 @@ std::vector<Key> sensor_keys();
 std::vector<Key> photo_keys();
 std::vector<Key> planner_keys();
 std::vector<Key> volumetric_keys();
+std::vector<Key> uniform_keys();
+std::vector<Key> pb_nbv_keys();
 std::vector<Key> start_keys();
 std::vector<Key> limits_keys();
 std::vector<Key> evaluation_keys();
@@ -30,12 +32,14 @@ struct KeySection {
   std::vector<Key> (*keys)();
 };
 
-inline constexpr std::array<KeySection, 15> key_sections{{{"", general_keys},
+inline constexpr std::array<KeySection, 17> key_sections{{{"", general_keys},
                                                           {"scene", scene_keys},
                                                           {"sensor", sensor_keys},
                                                           {"photo", photo_keys},
                                                           {"planner", planner_keys},
                                                           {"volumetric", volumetric_keys},
+                                                          {"uniform", uniform_keys},
+                                                          {"pb_nbv", pb_nbv_keys},
                                                           {"start", start_keys},
                                                           {"limits", limits_keys},
                                                           {"evaluation", evaluation_keys},

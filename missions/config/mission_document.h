@@ -28,6 +28,8 @@
 #include "missions/session/initial_pattern_flight.h"
 #include "missions/site_data/source.h"
 #include "sim/sensors/survey_sensor.h"
+#include "survey/fixed_views/fixed_views_config.h"
+#include "survey/pb_nbv/pb_nbv_config.h"
 #include "survey/photo/photo_planner.h"
 #include "survey/planners/planner_names.h"
 #include "survey/see/see_config.h"
@@ -107,7 +109,12 @@ struct PlannerSection {
   survey::see::SeeConfig see;  ///< settings used only by SEE and SEE++
   survey::surfel::StopRule surfel_stop;
   survey::surfel::AblationSwitches ablation;
-  survey::volumetric::VolumetricSettings volumetric;  ///< settings of the planners rsv to ae
+  survey::volumetric::VolumetricSettings volumetric;   ///< settings of the planners rsv to ae
+  survey::pb_nbv::PbNbvSettings pb_nbv;                ///< settings of PB-NBV
+  survey::fixed_views::FixedViewSettings fixed_views;  ///< settings of uniform and random
+  /// Shared library or Python file of the planner external; resolve() makes it absolute.
+  std::optional<std::string> file;
+  bool is_file_by_user = false;  ///< whether the user of this run states `file`; else not executed
 };
 
 /// First view. Without a position, the seed determines a random one.

@@ -344,6 +344,13 @@ ParsedValues collected(const std::string& text, const std::string& name,
   return values;
 }
 
+/// Records whether the user of this run states planner.file, which is executed only then.
+void record_source_of_planner(const std::vector<KeyOverride>& changes, MissionDocument& document) {
+  for (const KeyOverride& change : changes) {
+    if (change.path == "planner.file") document.planner.is_file_by_user = change.is_by_user;
+  }
+}
+
 MissionDocument mission_from(const std::string& text, const std::string& name,
                              const std::vector<KeyOverride>& overrides) {
   const ParsedValues parsed_value = collected(text, name, overrides);
@@ -360,6 +367,7 @@ MissionDocument mission_from(const std::string& text, const std::string& name,
     const Key& key = *find_key(path);
     key.type == KeyType::sources ? apply_sources(value, key, result) : apply(value, key, result);
   }
+  record_source_of_planner(overrides, result);
   for (const Key& key : mission_keys()) {
     if (!key.is_required || parsed_value.contains(key.path)) continue;
     if (result.is_photo()) continue;  // what simulated surveys of depth sensors require
@@ -398,6 +406,7 @@ void override_keys(MissionDocument& document, const std::vector<KeyOverride>& ch
     apply(parsed_value, *find_key(path), document);
     document.locations[path] = change.origin;
   }
+  record_source_of_planner(changes, document);
 }
 
 MissionDocument read_mission_document(const std::filesystem::path& file,

@@ -77,7 +77,8 @@ std::string_view find_replacing_photo_key(std::string_view key) {
   if (found != replacements.end()) return found->by;
   const bool is_of_depth = (key.starts_with("sensor.") && key != "sensor.photo_camera") ||
                            (key.starts_with("planner.") && !key.starts_with("planner.scene_box")) ||
-                           key.starts_with("volumetric.") || key.starts_with("start.") ||
+                           key.starts_with("volumetric.") || key.starts_with("uniform.") ||
+                           key.starts_with("pb_nbv.") || key.starts_with("start.") ||
                            key.starts_with("live.") || key == "flight.views" ||
                            key == "flight.vehicles" || key == "flight.pads";
   return is_of_depth ? "-" : std::string_view();

@@ -41,9 +41,18 @@ std::vector<Key> which_planner() {
               "planner.name", planner_words(), [](auto& m) -> auto& { return m.planner.name; },
               "Planner. skycap: the planner of this program; uses spacing, view_distance, "
               "scene_box, target_coverage and min_gain of the keys below. see++: SEE++. see: "
-              "see++ without optimise_views and visibility_graph. The others are volumetric and "
-              "use resolution_radius as voxel width, spacing, view_distance, scene_box and the "
-              "section volumetric.")),
+              "see++ without optimise_views and visibility_graph. rsv, rse, oa, uv, pc, af, ae: "
+              "volumetric; use resolution_radius as voxel width, spacing, view_distance, "
+              "scene_box and the section volumetric. pb-nbv, pb-nbv-released: PB-NBV as published "
+              "and as in its released code; section pb_nbv. uniform, random: fixed views without "
+              "planning; section uniform. external: the planner in planner.file.")),
+      otherwise(
+          "none",
+          text_key(
+              "planner.file", [](auto& m) -> auto& { return m.planner.file; },
+              "Planner of your own for planner.name external: a shared library (.so) or a Python "
+              "file (.py), relative to the mission file. The file is code: it is executed only if "
+              "the command line names it (--planner FILE), never because a mission file does.")),
       choice_key(
           "planner.preset", {"paper", "building"},
           [](auto& m) -> auto& { return m.planner.preset; },

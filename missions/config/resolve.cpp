@@ -309,6 +309,10 @@ void complete_own_keys(MissionDocument& document, const Profiles& profiles) {
       !document.has("planner.goal")) {
     document.planner.goal = PlannerGoal::minutes;
   }
+  if (document.planner.file) {  // absolute, because a package stores the mission in another folder
+    document.planner.file =
+        std::filesystem::absolute(find_folder(document) / *document.planner.file).string();
+  }
   complete_scanner(document, profiles);
   check_photo(document);
   if (profiles.photo_camera) {

@@ -115,9 +115,11 @@ double seconds_since(std::chrono::steady_clock::time_point begun) {
 
 ViewTimes times_of_a_view(const evaluation::SimulationOptions& options,
                           const evaluation::SurveyScene& scene, const session::RunOptions& run) {
-  const auto planner = survey::make_planner(
-      options.survey.planner,
-      {.seed = run.seed, .threads = run.threads, .sphere = scene.view_sphere()});
+  const auto planner = survey::make_planner(options.survey.planner,
+                                            {.seed = run.seed,
+                                             .threads = run.threads,
+                                             .sphere = scene.view_sphere(),
+                                             .true_scene_admits = scene.admissible().allows});
   const sim::SurveySensor sensor(options.sensor, run.seed);
   ViewTimes times;
   const auto begun = std::chrono::steady_clock::now();
@@ -140,12 +142,15 @@ Expectation expectation(const evaluation::SimulationOptions& options,
                         const evaluation::SurveyScene& scene, const session::RunOptions& run) {
   const session::SurveyOptions& asked = options.survey;
   const std::vector<View> known = known_cover(options, scene, run.seed, run.threads, few);
-  const double limit = static_cast<double>(asked.limits.max_views);
+  double limit = static_cast<double>(asked.limits.max_views);
+  const auto* fixed = std::get_if<survey::fixed_views::FixedViewsConfig>(&asked.planner.method);
+  if (fixed != nullptr) limit = std::min(limit, static_cast<double>(fixed->settings.views));
   const auto count = static_cast<double>(known.size());
-  const bool is_volumetric = survey::find_title(asked.planner.name).metric.has_value();
+  const bool has_view_limit = survey::find_title(asked.planner.name).metric.has_value() ||
+                              fixed != nullptr || survey::is_pb_nbv(asked.planner.name);
   const Share share = find_view_ratio(asked.planner.name);
-  const double min = is_volumetric ? limit : std::min(limit, std::round(share.min * count));
-  const double max = is_volumetric ? limit : std::min(limit, std::round(share.max * count));
+  const double min = has_view_limit ? limit : std::min(limit, std::round(share.min * count));
+  const double max = has_view_limit ? limit : std::min(limit, std::round(share.max * count));
   const double minutes =
       asked.limits.max_time.value_or(std::numeric_limits<double>::max()) / seconds_per_minute;
   const ViewTimes times = times_of_a_view(options, scene, run);

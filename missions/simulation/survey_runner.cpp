@@ -60,9 +60,11 @@ session::SurveyRecord run_survey(const evaluation::SimulationOptions& options,
                                  SurveyJournal* journal) {
   MountedSensor sensor(options, seed);
   const geometry::View first_view = scene.first_view(seed);
-  session::ConstrainedPlanner guided(
-      options.survey, first_view,
-      {.seed = seed, .threads = threads, .sphere = scene.view_sphere()});
+  session::ConstrainedPlanner guided(options.survey, first_view,
+                                     {.seed = seed,
+                                      .threads = threads,
+                                      .sphere = scene.view_sphere(),
+                                      .true_scene_admits = scene.admissible().allows});
   evaluation::CoverageMeter meter(scene.samples().points, options.evaluation.registration_distance);
   session::SurveyRecord record;
   record.seed = seed;

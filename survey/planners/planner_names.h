@@ -11,7 +11,23 @@
 
 namespace skycap::survey {
 
-enum class PlannerName { see_plus_plus, see, skycap, rsv, rse, oa, uv, pc, af, ae };
+enum class PlannerName {
+  see_plus_plus,
+  see,
+  skycap,
+  rsv,
+  rse,
+  oa,
+  uv,
+  pc,
+  af,
+  ae,
+  pb_nbv,           ///< PB-NBV as published
+  pb_nbv_released,  ///< PB-NBV as in the released code
+  uniform,          ///< fixed views, evenly distributed: no planning
+  random,           ///< fixed views, independently distributed: no planning
+  external,         ///< planner of a user
+};
 
 struct PlannerTitle {
   PlannerName name;
@@ -22,10 +38,10 @@ struct PlannerTitle {
 };
 
 /// Sorted in the order of PlannerName.
-inline constexpr std::array<PlannerTitle, 10> planner_titles = [] {
+inline constexpr std::array<PlannerTitle, 15> planner_titles = [] {
   using enum PlannerName;
   using enum volumetric::VolumetricMetric;
-  return std::array<PlannerTitle, 10>{{{see_plus_plus, "see++", "SEE++"},
+  return std::array<PlannerTitle, 15>{{{see_plus_plus, "see++", "SEE++"},
                                        {see, "see", "SEE"},
                                        {skycap, "skycap", "Skycap"},
                                        {rsv, "rsv", "RSV", rear_side_voxel},
@@ -34,7 +50,12 @@ inline constexpr std::array<PlannerTitle, 10> planner_titles = [] {
                                        {uv, "uv", "UV", unobserved_voxel},
                                        {pc, "pc", "PC", proximity_count},
                                        {af, "af", "AF", area_factor},
-                                       {ae, "ae", "AE", average_entropy}}};
+                                       {ae, "ae", "AE", average_entropy},
+                                       {pb_nbv, "pb-nbv", "PB-NBV"},
+                                       {pb_nbv_released, "pb-nbv-released", "PB-NBV (released)"},
+                                       {uniform, "uniform", "Uniform"},
+                                       {random, "random", "Random"},
+                                       {external, "external", "External"}}};
 }();
 
 static_assert([] {
@@ -46,6 +67,15 @@ static_assert([] {
 
 constexpr const PlannerTitle& find_title(PlannerName name) {
   return planner_titles[static_cast<std::size_t>(name)];
+}
+
+/// Returns whether the planner takes a fixed set of views without planning.
+constexpr bool has_fixed_views(PlannerName name) {
+  return name == PlannerName::uniform || name == PlannerName::random;
+}
+
+constexpr bool is_pb_nbv(PlannerName name) {
+  return name == PlannerName::pb_nbv || name == PlannerName::pb_nbv_released;
 }
 
 /// Returns the planner with this name in files, or nullopt.

@@ -5,7 +5,10 @@
 #include <Eigen/Core>
 
 #include "geometry/error.h"
+#include "survey/external/external_planner.h"
+#include "survey/fixed_views/fixed_view_planner.h"
 #include "survey/limited_planner.h"
+#include "survey/pb_nbv/pb_nbv_planner.h"
 #include "survey/see/see.h"
 #include "survey/surfel/surfel_planner.h"
 #include "survey/volumetric/volumetric_planner.h"
@@ -41,16 +44,43 @@ struct Maker {
 
   std::unique_ptr<Planner> operator()(VolumetricConfig config) const {
     const volumetric::VolumetricSettings& given = config.settings;
-    if ((!given.sphere_centre || !given.sphere_radius) && !run.sphere) {
+    const ViewSphere sphere = complete_sphere(given.sphere_centre, given.sphere_radius);
+    config.sphere_centre = sphere.centre;
+    config.sphere_radius = sphere.radius;
+    config.seed = run.seed ^ candidates_stream;
+    config.threads = run.threads;
+    return limited(std::make_unique<volumetric::VolumetricPlanner>(config, camera), options.limits);
+  }
+
+  std::unique_ptr<Planner> operator()(pb_nbv::PbNbvConfig config) const {
+    config.seed = run.seed;
+    config.threads = run.threads;
+    return limited(std::make_unique<pb_nbv::PbNbvPlanner>(config, camera), options.limits);
+  }
+
+  std::unique_ptr<Planner> operator()(fixed_views::FixedViewsConfig config) const {
+    const ViewSphere sphere = complete_sphere(config.sphere_centre, config.sphere_radius);
+    config.centre = sphere.centre;
+    config.radius = sphere.radius;
+    config.seed = run.seed ^ candidates_stream;
+    config.admits = run.true_scene_admits;
+    return limited(std::make_unique<fixed_views::FixedViewPlanner>(config), options.limits);
+  }
+
+  std::unique_ptr<Planner> operator()(external::ExternalConfig config) const {
+    config.task.seed = run.seed;
+    return limited(std::make_unique<external::ExternalPlanner>(config), options.limits);
+  }
+
+  /// Completes the sphere set by the mission with that of the scene.
+  ViewSphere complete_sphere(const std::optional<Eigen::Vector3d>& centre,
+                             const std::optional<double>& radius) const {
+    if ((!centre || !radius) && !run.sphere) {
       throw Error(ErrorKind::bad_config,
                   "the planner requires volumetric.sphere_centre and volumetric.sphere_radius if "
                   "they cannot be derived from a model; set both");
     }
-    config.sphere_centre = given.sphere_centre ? *given.sphere_centre : run.sphere->centre;
-    config.sphere_radius = given.sphere_radius ? *given.sphere_radius : run.sphere->radius;
-    config.seed = run.seed ^ candidates_stream;
-    config.threads = run.threads;
-    return limited(std::make_unique<volumetric::VolumetricPlanner>(config, camera), options.limits);
+    return {centre ? *centre : run.sphere->centre, radius ? *radius : run.sphere->radius};
   }
 };
 

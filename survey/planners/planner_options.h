@@ -11,6 +11,9 @@
 #include <Eigen/Geometry>
 
 #include "geometry/pose/camera.h"
+#include "survey/external/external_planner.h"
+#include "survey/fixed_views/fixed_views_config.h"
+#include "survey/pb_nbv/pb_nbv_config.h"
 #include "survey/planner.h"
 #include "survey/planners/planner_names.h"
 #include "survey/see/see_config.h"
@@ -40,9 +43,11 @@ struct PlannerOptions {
       1.5707963267948966;  ///< maximum angle between ray and normal with a return [rad]
   ViewLimits limits;
 
-  /// Settings of the planner `name`. Complete except for seed, threads and prior surface, and for
-  /// the sphere of a volumetric planner if the mission does not set it.
-  std::variant<see::SeeConfig, surfel::SurfelConfig, volumetric::VolumetricConfig> method;
+  /// Settings of the planner `name`. Seed, threads, prior surface and a sphere that the mission
+  /// does not set are completed by make_planner().
+  std::variant<see::SeeConfig, surfel::SurfelConfig, volumetric::VolumetricConfig,
+               pb_nbv::PbNbvConfig, fixed_views::FixedViewsConfig, external::ExternalConfig>
+      method;
 
   /// Returns the prior surface of the targets. Called on demand; may be empty.
   std::function<std::shared_ptr<const surfel::PriorSurface>()> prior_surface;
@@ -55,12 +60,16 @@ struct PlannerOptions {
 /// Parameters of one run of a planner.
 struct PlannerRun {
   std::uint64_t seed = 1;
-  unsigned threads = 1;              ///< zero: all processors; does not affect the plan
-  std::optional<ViewSphere> sphere;  ///< sphere of volumetric planners whose settings have none
+  unsigned threads = 1;  ///< zero: all processors; does not affect the plan
+  /// Sphere of volumetric planners and fixed views whose settings have none.
+  std::optional<ViewSphere> sphere;
+  /// Returns whether the true scene admits a view. Only for fixed views, which are no planner and
+  /// are granted this knowledge; empty: unknown, as in live surveys.
+  std::function<bool(const geometry::View&)> true_scene_admits{};
 };
 
 /// Creates the planner and applies the limits. Throws Error{bad_config} for a volumetric planner
-/// without a sphere.
+/// and for fixed views without a sphere, and the errors of a user's planner.
 std::unique_ptr<Planner> make_planner(const PlannerOptions& options, const PlannerRun& run);
 
 }  // namespace skycap::survey

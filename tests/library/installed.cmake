@@ -49,6 +49,7 @@ build_against_installed(certify_route ${SOURCE}/examples/certify_route ${heavy} 
 expect_output(certify_route "^leg 2: 1[.]000 m from [^\n]*\n3 of 4 legs keep 2 m\n$")
 build_against_installed(simulate_lidar ${SOURCE}/examples/simulate_lidar ${heavy} Ceres)
 expect_output(simulate_lidar "^[1-9][0-9]* returns of 80000 shots\n$")
+build_against_installed(own_planner ${SOURCE}/examples/own_planner ${heavy} embree)
 
 # Compiles each public header on its own.
 file(GLOB headers RELATIVE ${FOLDER}/moved/include ${FOLDER}/moved/include/skycap/*/*.h)

@@ -52,13 +52,17 @@ Modules architecture() {
   add("sim/sensors", {"sim/scene"});
 
   add("survey", {});
+  add("survey/external", {"survey"});
+  add("survey/fixed_views", {"survey"});
+  add("survey/pb_nbv", {"survey"});
   add("survey/photo", {"survey"});
   add("survey/see", {"survey"});
   add("survey/surfel/raster", {"survey"});
   add("survey/surfel", {"survey", "survey/surfel/raster"});
   add("survey/volumetric", {"survey"});
   add("survey/planners",
-      {"survey", "survey/see", "survey/surfel", "survey/surfel/raster", "survey/volumetric"});
+      {"survey", "survey/external", "survey/fixed_views", "survey/pb_nbv", "survey/see",
+       "survey/surfel", "survey/surfel/raster", "survey/volumetric"});
 
   add("flight/clearance", {});
   add("flight/autopilot", {});

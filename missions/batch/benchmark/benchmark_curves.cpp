@@ -176,11 +176,6 @@ std::vector<std::string> missions_of(const std::vector<BenchmarkCell>& cells) {
   return missions;
 }
 
-std::string planner_title(const std::string& planner) {
-  const Method* method = find_method(planner);
-  return method ? method->title : planner;
-}
-
 /// Returns the curves of a mission along an axis. Each planner has the same colour in all diagrams.
 std::vector<Line> split_lines(const std::vector<BenchmarkCell>& cells, const std::string& mission,
                               const Axis& axis) {
@@ -192,7 +187,7 @@ std::vector<Line> split_lines(const std::vector<BenchmarkCell>& cells, const std
     if (cell.mission != mission) continue;
     const auto number = static_cast<std::size_t>(known - planners.begin());
     lines.push_back(
-        {planner_title(cell.planner), colours[number % colours.size()], curve_of(cell, axis)});
+        {to_title(cell.planner), colours[number % colours.size()], curve_of(cell, axis)});
   }
   return lines;
 }

@@ -3,14 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "geometry/parallel.h"
 #include "missions/batch/benchmark/benchmark_curves.h"
+#include "missions/batch/benchmark/markdown_table.h"
 #include "missions/batch/benchmark/methods.h"
 #include "missions/batch/benchmark/paper_results.h"
+#include "missions/batch/benchmark/protocol_g.h"
+#include "missions/batch/benchmark/uniform_comparison.h"
 #include "missions/support/json_text.h"
 #include "missions/support/number_text.h"
 #include "missions/version.h"
@@ -165,11 +169,6 @@ std::string formatted(const char* format, double number) {
   return fmt::format(fmt::runtime(format), number);
 }
 
-std::string find_title(const std::string& planner) {
-  const Method* method = find_method(planner);
-  return method ? method->title : planner;
-}
-
 template <typename Member>
 std::vector<std::string> distinct(const std::vector<BenchmarkCell>& cells, Member member) {
   std::vector<std::string> values;
@@ -205,15 +204,50 @@ std::vector<Mark> make_marks(const std::vector<BenchmarkCell>& cells, const std:
     const BenchmarkCell* cell = find_cell(cells, mission, planner);
     if (!cell || cell->trials.empty()) continue;
     const CellFigures whole = compute_figures(*cell);
-    marks.push_back({planner, find_title(planner) + " here", whole.coverage.mean, whole});
+    marks.push_back({planner, to_title(planner) + " here", whole.coverage.mean, whole});
   }
   return marks;
+}
+
+/// Returns the statistic of a measure, or nullopt if a trial does not have it.
+template <typename Figure>
+std::optional<Statistic> find_statistic(const std::vector<Trial>& trials, const Figure& figure) {
+  std::vector<double> numbers;
+  for (const Trial& trial : trials) {
+    const std::optional<double> number = figure(trial);
+    if (!number) return std::nullopt;
+    numbers.push_back(*number);
+  }
+  if (numbers.empty()) return std::nullopt;
+  return statistic(numbers);
+}
+
+/// Returns the statistic of the mean coverage over the first `views` views.
+std::optional<Statistic> find_auc(const std::vector<Trial>& trials, std::size_t views) {
+  return find_statistic(trials, [views](const Trial& trial) {
+    return trial.coverage_after.empty() ? std::nullopt
+                                        : std::optional(compute_auc(trial.coverage_after, views));
+  });
+}
+
+/// Adds the measures of protocol_g.h that all trials have.
+void add_protocol_g(const std::vector<Trial>& trials, Json& json) {
+  const auto add = [&](Json& to, const std::string& key, const std::optional<Statistic>& known) {
+    if (known) to[key] = statistic_json(*known);
+  };
+  add(json, "grid_coverage", find_statistic(trials, std::mem_fn(&Trial::grid_coverage)));
+  add(json, "grid_coverage_visible",
+      find_statistic(trials, std::mem_fn(&Trial::grid_coverage_visible)));
+  add(json, "chamfer_distance_m", find_statistic(trials, std::mem_fn(&Trial::chamfer_distance)));
+  for (const std::size_t views : auc_views) {
+    add(json["coverage_auc"], std::to_string(views), find_auc(trials, views));
+  }
 }
 
 Json to_json(const BenchmarkCell& cell, const std::vector<BenchmarkCell>& cells) {
   Json json{{"mission", cell.mission},
             {"planner", cell.planner},
-            {"title", find_title(cell.planner)},
+            {"title", to_title(cell.planner)},
             {"trials", cell.trials.size()}};
   if (cell.trials.empty()) return json;
   json["trials_complete"] =
@@ -250,22 +284,39 @@ Json to_json(const BenchmarkCell& cell, const std::vector<BenchmarkCell>& cells)
     to["distance_m"] = statistic_json(reach->distance);
     to["planning_time_s"] = statistic_json(reach->planning_time);
   }
+  add_protocol_g(cell.trials, json);
   json["curves"] = curves_json(cell.trials);
   json["each_trial"] = each_trial_json(cell.trials);
   return json;
 }
 
-/// Returns a row of a Markdown table.
-std::string row(const std::vector<std::string>& cells) {
-  std::string text = "|";
-  for (const std::string& cell : cells) text += " " + cell + " |";
-  return text + "\n";
+/// Returns the cells of planners.
+std::vector<BenchmarkCell> without_sets(const std::vector<BenchmarkCell>& cells) {
+  std::vector<BenchmarkCell> planned = cells;
+  std::erase_if(planned, [](const BenchmarkCell& cell) { return cell.set_views.has_value(); });
+  return planned;
 }
 
-std::string rule(std::size_t columns) {
-  std::string text = "| --- |";
-  for (std::size_t i = 1; i < columns; ++i) text += " ---: |";
-  return text + "\n";
+Json difference_json(const std::optional<PairedDifference>& difference) {
+  return difference ? statistic_json(difference->difference) : Json();
+}
+
+Json comparison_json(const UniformComparison& comparison) {
+  return {{"mission", comparison.mission},
+          {"planner", comparison.planner},
+          {"title", to_title(comparison.planner)},
+          {"views", statistic_json(comparison.views)},
+          {"coverage", statistic_json(comparison.coverage)},
+          {"distance_m", statistic_json(comparison.distance)},
+          {"same_views", comparison.same_views},
+          {"coverage_difference", difference_json(comparison.coverage_difference)},
+          {"distance_difference_m", difference_json(comparison.distance_difference)},
+          {"beats_uniform", comparison.beats_uniform()},
+          {"verdict", comparison.verdict()},
+          {"reaching_views", comparison.reaching_views ? Json(*comparison.reaching_views) : Json()},
+          {"reaching_distance_m",
+           comparison.reaching_distance ? statistic_json(*comparison.reaching_distance) : Json()},
+          {"max_tested_views", comparison.max_tested_views}};
 }
 
 /// Returns Table 1 in the layout of the paper: one row per planner, four columns per model.
@@ -275,9 +326,9 @@ std::string table_1(const std::vector<BenchmarkCell>& cells, Times times) {
   for (const std::string& mission : missions) {
     for (const Column& column : columns(times)) head.push_back(mission + ": " + column.title);
   }
-  std::string text = row(head) + rule(head.size());
+  std::string text = table_row(head) + table_rule(head.size());
   for (const std::string& planner : distinct(cells, &BenchmarkCell::planner)) {
-    std::vector<std::string> line{find_title(planner)};
+    std::vector<std::string> line{to_title(planner)};
     for (const std::string& mission : missions) {
       const BenchmarkCell* cell = find_cell(cells, mission, planner);
       const auto paper = paper_result(mission, planner);
@@ -293,7 +344,7 @@ std::string table_1(const std::vector<BenchmarkCell>& cells, Times times) {
         line.push_back(entry);
       }
     }
-    text += row(line);
+    text += table_row(line);
   }
   return text;
 }
@@ -323,12 +374,12 @@ std::string details(const std::vector<BenchmarkCell>& cells, const std::string& 
   for (const Column& column : columns(times)) head.emplace_back(column.title);
   head.insert(head.end(), {"of the visible surface [%]", "of the attainable coverage [%]",
                            "survey flight [s]"});
-  std::string text = row(head) + rule(head.size());
+  std::string text = table_row(head) + table_rule(head.size());
   for (const BenchmarkCell& cell : cells) {
     if (cell.mission != mission || cell.trials.empty()) continue;
     const CellFigures figures = compute_figures(cell);
     const auto paper = paper_result(mission, cell.planner);
-    std::vector<std::string> line{find_title(cell.planner), std::to_string(cell.trials.size())};
+    std::vector<std::string> line{to_title(cell.planner), std::to_string(cell.trials.size())};
     for (const Column& column : columns(times)) {
       line.push_back(with_certainty(column, figures.*column.ours, paper));
     }
@@ -340,7 +391,7 @@ std::string details(const std::vector<BenchmarkCell>& cells, const std::string& 
             ? formatted("{:.1f}", 100.0 * figures.coverage.mean / *figures.attainable_coverage)
             : "-");
     line.push_back(figures.flight_time ? with_spread(*figures.flight_time) : "-");
-    text += row(line);
+    text += table_row(line);
   }
   return text;
 }
@@ -351,13 +402,12 @@ std::string cut_short_text(const std::vector<BenchmarkCell>& cells, const std::s
   std::string text;
   for (const BenchmarkCell& cell : cells) {
     const Method* method = find_method(cell.planner);
-    if (cell.mission != mission || (method != nullptr && method->is_volumetric)) continue;
+    if (cell.mission != mission || (method != nullptr && method->has_view_limit)) continue;
     const auto cut =
         std::ranges::count(cell.trials, survey::StopReason::view_limit, &Trial::stop_reason);
     if (cut == 0) continue;
-    text +=
-        fmt::format("{}{}: {} of {} surveys ended at limits.max_views", text.empty() ? "" : "; ",
-                    find_title(cell.planner), cut, cell.trials.size());
+    text += fmt::format("{}{}: {} of {} surveys ended at limits.max_views",
+                        text.empty() ? "" : "; ", to_title(cell.planner), cut, cell.trials.size());
   }
   return text.empty() ? "" : "\n" + text + ". Ratios to the paper compare unfinished surveys.\n";
 }
@@ -378,7 +428,7 @@ std::string reach_table(const std::vector<BenchmarkCell>& cells, const std::stri
       if (cell.mission != mission || cell.planner == mark.key) continue;
       const auto reach = reach_figures(cell.trials, mark.coverage);
       std::vector<std::string> line{
-          mark.title + ", " + formatted("{:.1f}", 100.0 * mark.coverage), find_title(cell.planner),
+          mark.title + ", " + formatted("{:.1f}", 100.0 * mark.coverage), to_title(cell.planner),
           std::to_string(reach ? reach->reached : 0) + " of " + std::to_string(cell.trials.size())};
       for (const Column& column : columns(times)) {
         if (column.ours == &CellFigures::coverage) continue;
@@ -388,7 +438,7 @@ std::string reach_table(const std::vector<BenchmarkCell>& cells, const std::stri
                            ? entry(column, reach->distance)
                            : entry(column, reach->planning_time));
       }
-      text += row(line);
+      text += table_row(line);
     }
   }
   if (text.empty()) return text;
@@ -396,7 +446,7 @@ std::string reach_table(const std::vector<BenchmarkCell>& cells, const std::stri
   for (const Column& column : columns(times)) {
     if (column.ours != &CellFigures::coverage) head.emplace_back(column.title);
   }
-  return row(head) + rule(head.size()) + text;
+  return table_row(head) + table_rule(head.size()) + text;
 }
 
 /// Returns all trials of a planner on the standard models.
@@ -411,18 +461,18 @@ std::vector<Trial> standard_trials(const std::vector<BenchmarkCell>& cells,
 }
 
 std::string table_2(const std::vector<BenchmarkCell>& cells) {
-  std::string text =
-      row({"planner", "frontiers observed per view", "paper", "coverage per view [%]", "paper"}) +
-      rule(5);
+  std::string text = table_row({"planner", "frontiers observed per view", "paper",
+                                "coverage per view [%]", "paper"}) +
+                     table_rule(5);
   for (const char* planner : {"see", "see++"}) {
     const std::vector<Trial> trials = standard_trials(cells, planner);
     if (trials.empty()) continue;
     const ViewFigures figures = view_figures(trials);
     const auto paper = paper_view_result(planner);
-    text += row({find_title(planner), formatted("{:.2f}", figures.frontiers.mean),
-                 formatted("{:.2f}", paper->frontiers),
-                 formatted("{:.2f}", 100.0 * figures.coverage.mean),
-                 formatted("{:.2f}", 100.0 * paper->coverage)});
+    text += table_row({to_title(planner), formatted("{:.2f}", figures.frontiers.mean),
+                       formatted("{:.2f}", paper->frontiers),
+                       formatted("{:.2f}", 100.0 * figures.coverage.mean),
+                       formatted("{:.2f}", 100.0 * paper->coverage)});
   }
   return text;
 }
@@ -431,13 +481,14 @@ std::string figure_6(const std::vector<BenchmarkCell>& cells) {
   constexpr double quoted_distance = 3.0;  // distance stated in the paper's text [m]
   const auto bin = static_cast<std::size_t>(quoted_distance / target_distance_bin) - 1;
   std::string text =
-      row({"planner", "targets observed", "with a single view [%]", "within 3 m [%]"}) + rule(4);
+      table_row({"planner", "targets observed", "with a single view [%]", "within 3 m [%]"}) +
+      table_rule(4);
   for (const char* planner : {"see", "see++"}) {
     const TargetFigures figures = target_figures(standard_trials(cells, planner));
     if (figures.targets == 0) continue;
-    text += row({find_title(planner), std::to_string(figures.targets),
-                 formatted("{:.1f}", 100.0 * figures.share_by_views.front()),
-                 formatted("{:.1f}", 100.0 * figures.share_by_distance[bin])});
+    text += table_row({to_title(planner), std::to_string(figures.targets),
+                       formatted("{:.1f}", 100.0 * figures.share_by_views.front()),
+                       formatted("{:.1f}", 100.0 * figures.share_by_distance[bin])});
   }
   return text;
 }
@@ -510,9 +561,28 @@ std::string trials_table(const config::MissionSetup& mission, const std::vector<
   return table;
 }
 
-std::string results_json(const std::vector<BenchmarkCell>& cells) {
+std::string results_json(const std::vector<BenchmarkCell>& all) {
+  const std::vector<BenchmarkCell> cells = without_sets(all);
   Json json{{"version", version}, {"results", Json::array()}};
   for (const BenchmarkCell& cell : cells) json["results"].push_back(to_json(cell, cells));
+  if (cells.size() == all.size()) return support::json_text(json);
+  json["uniform_comparison"] = Json::array();
+  for (const UniformComparison& comparison : compare_with_uniform(all)) {
+    json["uniform_comparison"].push_back(comparison_json(comparison));
+  }
+  json["fixed_views"] = Json::array();
+  for (const BenchmarkCell& cell : all) {
+    if (!cell.set_views || cell.trials.empty()) continue;
+    const CellFigures figures = compute_figures(cell);
+    json["fixed_views"].push_back({{"mission", cell.mission},
+                                   {"planner", cell.planner},
+                                   {"views", *cell.set_views},
+                                   {"trials", cell.trials.size()},
+                                   {"coverage", statistic_json(figures.coverage)},
+                                   {"distance_m", statistic_json(figures.distance)},
+                                   {"each_trial", each_trial_json(cell.trials)}});
+    add_protocol_g(cell.trials, json["fixed_views"].back());
+  }
   return support::json_text(json);
 }
 
@@ -554,22 +624,63 @@ std::string all_trials_csv(const std::vector<BenchmarkCell>& cells, Times times)
     if (csv.empty()) csv = "mission,planner," + lines.substr(0, header_end);
     for (std::size_t begin = header_end; begin < lines.size();) {
       const std::size_t end = lines.find('\n', begin) + 1;
-      csv += cell.mission + "," + cell.planner + "," + lines.substr(begin, end - begin);
+      csv += cell.mission + "," + cell.planner +
+             (cell.set_views ? "_" + std::to_string(*cell.set_views) : "") + "," +
+             lines.substr(begin, end - begin);
       begin = end;
     }
   }
   return csv;
 }
 
-std::string report_markdown(const std::vector<BenchmarkCell>& cells, const std::string& title,
+/// Returns the table of the measures of protocol_g.h, or an empty string if no cell has them.
+std::string protocol_g_markdown(const std::vector<BenchmarkCell>& cells) {
+  std::vector<std::string> head{"planner", "mission"};
+  for (const std::size_t views : auc_views) {
+    head.push_back("AUC over " + std::to_string(views) + " views [%]");
+  }
+  head.insert(head.end(),
+              {"grid coverage [%]", "grid coverage, visible cells [%]", "Chamfer distance [mm]"});
+  const auto scaled = [](const std::optional<Statistic>& known, const char* format, double factor) {
+    return known ? formatted(format, factor * known->mean) : std::string("-");
+  };
+  std::string lines;
+  for (const BenchmarkCell& cell : cells) {
+    const auto grid = find_statistic(cell.trials, std::mem_fn(&Trial::grid_coverage));
+    if (!grid) continue;
+    std::vector<std::string> line{to_title(cell.planner), cell.mission};
+    for (const std::size_t views : auc_views) {
+      line.push_back(scaled(find_auc(cell.trials, views), "{:.1f}", 100.0));
+    }
+    line.push_back(scaled(grid, "{:.1f}", 100.0));
+    line.push_back(scaled(find_statistic(cell.trials, std::mem_fn(&Trial::grid_coverage_visible)),
+                          "{:.1f}", 100.0));
+    line.push_back(scaled(find_statistic(cell.trials, std::mem_fn(&Trial::chamfer_distance)),
+                          "{:.2f}", 1000.0));
+    lines += table_row(line);
+  }
+  if (lines.empty()) return "";
+  return "\n"
+         "## Measures of the GenNBV protocol\n"
+         "\n"
+         "AUC: mean coverage over the first views; a survey that ends earlier keeps its last "
+         "value. Grid coverage: fraction of the occupied cells of a 20 x 20 x 20 grid with a "
+         "measured point. Chamfer distance: of points rounded to 1 cm.\n"
+         "\n" +
+         table_row(head) + table_rule(head.size()) + lines;
+}
+
+std::string report_markdown(const std::vector<BenchmarkCell>& all, const std::string& title,
                             Times times) {
+  const std::vector<BenchmarkCell> cells = without_sets(all);
   std::string text = "# " + title +
                      "\n"
                      "\n"
                      "Means over the trials, with the values of the SEE++ paper (100 trials) in "
                      "brackets. The symbol ± precedes the half width of the 95% confidence "
                      "interval of the mean, and × precedes the ratio to the paper. sd: standard "
-                     "deviation over the trials. Definitions: docs/howto/compare-planners.md.\n"
+                     "deviation over the trials. Definitions: docs/howto/compare-planners.md.\n" +
+                     uniform_markdown(all) +
                      "\n"
                      "## Table 1\n"
                      "\n" +
@@ -605,16 +716,17 @@ std::string report_markdown(const std::vector<BenchmarkCell>& cells, const std::
         "\n" +
         figure_6(cells);
   }
-  return text;
+  return text + protocol_g_markdown(cells);
 }
 
 std::string stage_tables(const std::vector<BenchmarkCell>& cells, const std::string& title,
                          Times times, geometry::OutputFolder& folder) {
   folder.write("trials.csv", all_trials_csv(cells, times));
-  folder.write("table1.csv", table_1_csv(cells, times));
+  const std::vector<BenchmarkCell> planned = without_sets(cells);
+  folder.write("table1.csv", table_1_csv(planned, times));
   folder.write("results.json", results_json(cells));
-  folder.write("curves.csv", curves_csv(cells, times));
-  folder.write("curves.svg", curves_svg(cells, times));
+  folder.write("curves.csv", curves_csv(planned, times));
+  folder.write("curves.svg", curves_svg(planned, times));
   std::string markdown = report_markdown(cells, title, times);
   folder.write("report.md", markdown);
   return markdown;

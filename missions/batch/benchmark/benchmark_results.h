@@ -15,6 +15,8 @@ struct BenchmarkCell {
   std::string mission;
   std::string planner;  ///< name of a contestant
   std::vector<Trial> trials;
+  /// Number of views of a fixed set, which has no curve of its own. Nullopt for planners.
+  std::optional<std::size_t> set_views = {};
 };
 
 /// Figures by which planners are compared.

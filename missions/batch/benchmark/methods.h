@@ -1,7 +1,8 @@
-/// Planners that a benchmark can compare. Add new planners to methods().
+/// Planners that a benchmark can compare: those of planner.name, the oracle and planners of users.
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <stop_token>
 #include <string>
@@ -19,6 +20,11 @@ struct Method {
   bool is_in_all = true;  ///< whether `--planners all` includes it
   /// Whether its view limit is the maximum number of views used by SEE.
   bool is_volumetric = false;
+  bool has_view_limit = false;  ///< whether its surveys usually end at their number of views
+  /// Whether it takes fixed views, which a benchmark runs with several numbers of views.
+  bool has_fixed_views = false;
+  /// Absolute path of a user's planner; empty for others.
+  std::filesystem::path file = {};
 
   /// Runs a survey of a mission in a single thread. The start and the sensor noise must depend on
   /// the seed only. Called concurrently from several threads.
@@ -33,10 +39,16 @@ struct Method {
 const std::vector<Method>& methods();
 
 /// Returns the contestants with the given names, in the order of methods(). "all" selects those
-/// with is_in_all. Throws Error{bad_usage} with a list of known names if a name is unknown.
+/// with is_in_all. A name that ends in .so or .py is the file of a user's planner; its title is the
+/// file name without extension. Throws Error{bad_usage} with a list of known names if a name is
+/// unknown, and if a user's planner has the name of another one.
 std::vector<const Method*> methods_by_name(const std::vector<std::string>& names);
 
-/// Returns the contestant with the given name, or null.
+/// Returns the contestant with the given name, or null. Users' planners are known once
+/// methods_by_name() has returned them.
 const Method* find_method(std::string_view name);
+
+/// Returns the title of a contestant, or the name itself if it is unknown.
+std::string to_title(const std::string& name);
 
 }  // namespace skycap::missions::batch

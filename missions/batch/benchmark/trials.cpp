@@ -13,6 +13,7 @@
 #include "geometry/error.h"
 #include "geometry/io/file.h"
 #include "geometry/io/json.h"
+#include "missions/batch/benchmark/protocol_g.h"
 #include "missions/evaluation/coverage.h"
 #include "missions/package/former_fields.h"
 #include "missions/scene/scene_source.h"
@@ -73,7 +74,8 @@ SceneTruth scene_truth(const evaluation::SurveyScene& scene, unsigned threads,
   return truth;
 }
 
-Trial make_trial(const session::SurveyRecord& record, const SceneTruth& truth) {
+Trial make_trial(const session::SurveyRecord& record, const evaluation::SurveyScene& scene,
+                 const SceneTruth& truth) {
   Trial trial;
   trial.seed = record.seed;
   trial.stop_reason = record.stop_reason;
@@ -90,6 +92,12 @@ Trial make_trial(const session::SurveyRecord& record, const SceneTruth& truth) {
     trial.planning_time_after.push_back(trial.planning_time);
     trial.frontiers_resolved += view.surveyed.step.frontiers_resolved;
   }
+  const std::vector<Eigen::Vector3f>& samples = scene.samples().points;
+  const GridCoverage grid =
+      compute_grid_coverage(record.cloud.positions, samples, truth.is_visible);
+  trial.grid_coverage = grid.all;
+  trial.grid_coverage_visible = grid.visible;
+  trial.chamfer_distance = compute_chamfer_distance(record.cloud.positions, samples);
   trial.targets = observed_targets(record.views);
   if (record.flight_record) {
     trial.flight_length = record.flight_record->length();
@@ -110,6 +118,9 @@ std::string trial_json(const Trial& trial) {
             {"distance_m", trial.distance},
             {"flown_m", optional_json(trial.flight_length)},
             {"flown_s", optional_json(trial.flight_time())},
+            {"grid_coverage", optional_json(trial.grid_coverage)},
+            {"grid_coverage_visible", optional_json(trial.grid_coverage_visible)},
+            {"chamfer_distance_m", optional_json(trial.chamfer_distance)},
             {"frontiers_resolved", trial.frontiers_resolved},
             {"coverage_after", trial.coverage_after},
             {"distance_after_m", trial.distance_after},
@@ -137,6 +148,10 @@ Trial parse_trial(const std::string& text) {
     trial.planning_time = json.at("planning_time_s").get<double>();
     trial.distance = json.at("distance_m").get<double>();
     trial.flight_length = optional_number(json.at("flown_m"));
+    // Trials of earlier versions do not contain these fields.
+    trial.grid_coverage = optional_number(json.value("grid_coverage", Json()));
+    trial.grid_coverage_visible = optional_number(json.value("grid_coverage_visible", Json()));
+    trial.chamfer_distance = optional_number(json.value("chamfer_distance_m", Json()));
     trial.frontiers_resolved = json.at("frontiers_resolved").get<std::size_t>();
     trial.coverage_after = json.at("coverage_after").get<std::vector<double>>();
     trial.distance_after = json.at("distance_after_m").get<std::vector<double>>();
@@ -161,6 +176,12 @@ std::string trial_fingerprint(const config::MissionSetup& mission, const std::st
     std::error_code ignored;  // missing files are reported when the scene is loaded
     const bool is_there = fs::is_regular_file(file, ignored);
     inputs.append("\n").append(is_there ? support::compute_file_sha256(file) : "-");
+  }
+  const auto* own = std::get_if<survey::external::ExternalConfig>(&mission.survey().planner.method);
+  if (own != nullptr) {
+    std::error_code ignored;  // a missing file is reported when the planner is created
+    const bool is_there = fs::is_regular_file(own->file, ignored);
+    inputs.append("\n").append(is_there ? support::compute_file_sha256(own->file) : "-");
   }
   return support::sha256(std::as_bytes(std::span(inputs)));
 }

@@ -51,6 +51,8 @@ struct Trial {
   std::vector<double> flight_time_after;
   /// Flight length from the pad to the last view [m], with a vehicle.
   std::optional<double> flight_length;
+  /// Measures of protocol_g.h. Nullopt for results of other programs and of earlier versions.
+  std::optional<double> grid_coverage, grid_coverage_visible, chamfer_distance;
   std::size_t frontiers_resolved = 0;   ///< points that ceased to be frontiers
   std::vector<ObservedTarget> targets;  ///< observed targets in chronological order
 
@@ -62,8 +64,9 @@ struct Trial {
   }
 };
 
-/// Computes the results of a completed survey.
-Trial make_trial(const session::SurveyRecord& record, const SceneTruth& truth);
+/// Computes the results of a completed survey of `scene`.
+Trial make_trial(const session::SurveyRecord& record, const evaluation::SurveyScene& scene,
+                 const SceneTruth& truth);
 
 /// Convert a trial to JSON and back without loss. parse_trial() throws Error{bad_file} if the
 /// string is not a trial.

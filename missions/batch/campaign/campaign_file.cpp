@@ -85,6 +85,11 @@ class CampaignReader {
   void read_planners() {
     try {
       for (const auto* method : methods_by_name(root_.texts("planners"))) {
+        if (!method->file.empty()) {
+          root_.fail_at("planners", method->file.filename().string() +
+                                        " is code, which campaigns do not execute; compare it "
+                                        "with skycap benchmark --planners");
+        }
         campaign_.planners.push_back(method->name);
       }
     } catch (const Error& error) {
@@ -212,7 +217,7 @@ fs::path ManifestLine::folder() const {
 
 std::string ManifestLine::json() const {
   Json set = Json::object();
-  for (const auto& [origin, path, value] : entry.variant->changes) set[path] = value;
+  for (const config::KeyOverride& change : entry.variant->changes) set[change.path] = change.value;
   const Json line{{"item", number},
                   {"mission", entry.mission},
                   {"variant", entry.variant->name},

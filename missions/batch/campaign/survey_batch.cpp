@@ -183,7 +183,7 @@ class Runner {
       notify(events_.packaged, *folder);
     }
     const std::chrono::duration<double> time = Clock::now() - start;
-    TrialRecord record{make_trial(survey, loaded.truth), run_here(time.count())};
+    TrialRecord record{make_trial(survey, loaded.scene, loaded.truth), run_here(time.count())};
     const std::string text = trial_record_json(setup.fingerprint, record);
     if (folder) {
       // Other files in the folder belong to an earlier record.
@@ -244,6 +244,10 @@ Setup own_setup(const fs::path& file, const config::MissionSetup& mission) {
 Setup read_setup(const fs::path& file, const Method* method, const std::string& origin,
                  std::vector<config::KeyOverride> overrides, const config::Report& report) {
   if (!method) return own_setup(file, config::read_mission(file, overrides, report));
+  if (!method->file.empty()) {
+    overrides.push_back({origin, "planner.name", "external"});
+    overrides.push_back({origin, "planner.file", method->file.string(), true});
+  }
   const auto& names = config::find_key("planner.name")->choices;
   if (std::ranges::find(names, method->name) != names.end()) {
     overrides.push_back({origin, "planner.name", method->name});

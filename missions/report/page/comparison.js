@@ -46,6 +46,33 @@ function compared_figure(data, { cell, path }, { key, form }) {
   return { number: element("div", {}, lines) };
 }
 
+/// The rule of honesty: each planner beside fixed views without planning.
+function uniform_section(data) {
+  const rows = data.summary.uniform_comparison;
+  if (!rows || !rows.length) return [];
+  const mean = (path, known, form) => {
+    if (!known) return { number: "–" };
+    const parts = [figure(data, path + ".mean", form)];
+    if (typeof known.half_width_95 === "number") parts.push(" ± ", figure(data, path + ".half_width_95", form));
+    return { number: element("span", {}, parts) };
+  };
+  const number = (content) => ({ number: content });
+  return [element("section", { id: "uniform" }, element("h2", {}, "Comparison with surveys without planning"),
+    element("p", {}, "Uniform takes a fixed set of views on a sphere, with a short tour. It is granted the centroid and the mean "
+      + "radius of the true surface and the positions that the true scene admits; the planners receive none of these. "
+      + "A planner is called better or worse only if the 95% interval of the difference, paired by seed, excludes zero."),
+    table(["planner", "mission", number("views"), number("coverage"), number("path"), number("coverage − uniform, same views"),
+      number("path − uniform, same views"), "verdict", number("views with which uniform reaches its coverage"), number("path of that tour")],
+    rows.map((row, i) => {
+      const path = "uniform_comparison." + i + ".";
+      return [row.title, row.mission, mean(path + "views", row.views, "mean"), mean(path + "coverage", row.coverage, "share"),
+        mean(path + "distance_m", row.distance_m, "metres"), mean(path + "coverage_difference", row.coverage_difference, "share"),
+        mean(path + "distance_difference_m", row.distance_difference_m, "metres"), row.verdict,
+        number(row.reaching_views === null ? "more than " + row.max_tested_views : String(row.reaching_views)),
+        mean(path + "reaching_distance_m", row.reaching_distance_m, "metres")];
+    })))];
+}
+
 function comparison_table(data, cells) {
   const known = compared.filter(({ key }) => cells.some(({ cell }) => cell[key]));
   const heading = [cells.length > 1 ? "planner" : "", { number: "trials" }, ...known.map(({ name }) => ({ number: name })),
@@ -172,5 +199,5 @@ function comparison_sections(data) {
       comparison_table(data, own), element("div", { class: "charts" }, coverage_curves(own), trials_chart(own), intervals, target_charts(own)),
       reach_table(data, own));
   });
-  return data.kind === "trials" ? [...sections, trial_table(data, cells[0])] : sections;
+  return data.kind === "trials" ? [...sections, trial_table(data, cells[0])] : [...uniform_section(data), ...sections];
 }

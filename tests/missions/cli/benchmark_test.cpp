@@ -141,6 +141,47 @@ TEST_F(BenchmarkCommand, RegeneratesHtmlReport) {
   EXPECT_FALSE(std::filesystem::exists(folder_.path() / "out" / "benchmark.html"));
 }
 
+// Each number of views has its own set; every planner is compared at its own number of views.
+TEST_F(BenchmarkCommand, ComparesPlannersWithFixedViews) {
+  const ProgramRun result = run("see++,uniform,random", {"--max-views", "9", "--set-views", "3,6"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("## Comparison with surveys without planning"));
+  EXPECT_EQ(trial("uniform_6", 1)["views"], 6);
+  EXPECT_EQ(trial("random_3", 2)["views"], 3);
+  const Json json = Json::parse(read_content(folder_.path() / "out" / "results.json"));
+  ASSERT_EQ(json["uniform_comparison"].size(), 1U);
+  const Json& see = json["uniform_comparison"][0];
+  EXPECT_EQ(see["planner"], "see++");
+  EXPECT_THAT(result.out, HasSubstr("## Measures of the GenNBV protocol"));
+  for (const Json& set : json["fixed_views"]) {
+    EXPECT_GT(set["grid_coverage"]["mean"], 0.3);
+    EXPECT_LE(set["grid_coverage"]["mean"], set["grid_coverage_visible"]["mean"]);
+    EXPECT_LE(set["coverage_auc"]["30"]["mean"], set["coverage"]["mean"]);
+  }
+  EXPECT_FALSE(see["coverage_difference"].is_null());
+  const std::string same = "uniform_" + std::to_string(see["same_views"].get<int>());
+  EXPECT_EQ(trial(same, 1)["views"], see["same_views"]);
+  // The common start: the same first scan as that of the planner.
+  EXPECT_EQ(trial(same, 1)["coverage_after"][0], trial("see++", 1)["coverage_after"][0]);
+  EXPECT_THAT(read_content(folder_.path() / "out" / "benchmark.html"),
+              HasSubstr("uniform_comparison"));
+}
+
+// The example in the documentation.
+TEST_F(BenchmarkCommand, RunsPlannerInPython) {
+  const std::string file = std::string(SKYCAP_SOURCE_DIR) + "/examples/own_planner/random_views.py";
+  const ProgramRun result = run("see++," + file, {"--max-views", "5"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("| random_views |"));
+  EXPECT_EQ(trial("random_views", 1)["views"], 5);
+  EXPECT_EQ(trial("random_views", 1)["coverage_after"][0], trial("see++", 1)["coverage_after"][0]);
+  EXPECT_GT(trial("random_views", 1)["planning_time_s"], 0.0);
+  EXPECT_THAT(read_content(folder_.path() / "out" / "benchmark.html"), HasSubstr("random_views"));
+  const ProgramRun missing = run("see++,no_such.py");
+  EXPECT_EQ(missing.exit_code, 2);
+  EXPECT_THAT(missing.err, HasSubstr("cannot open the planner no_such.py"));
+}
+
 TEST_F(BenchmarkCommand, RejectsUnknownPlanners) {
   const ProgramRun result = run("see,frontier");
   EXPECT_EQ(result.exit_code, 2);

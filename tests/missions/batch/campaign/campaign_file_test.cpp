@@ -11,6 +11,7 @@
 #include "geometry/error.h"
 #include "missions/config/mission_reader.h"
 #include "missions/support/flow_text.h"
+#include "tests/support/temporary_folder.h"
 
 namespace skycap::missions::batch {
 namespace {
@@ -126,6 +127,10 @@ TEST(Campaign, RejectsInvalidKeysWithLineNumber) {
   EXPECT_THAT(
       rejection_message("missions: [a.yaml]\nplanners: [frontier]\n"),
       HasSubstr("c.yaml:2: key planners: unknown planner 'frontier'; expected all or names"));
+  const testing_support::TemporaryFolder folder;
+  const std::string code = folder.file("mine_alone.py", "").string();
+  EXPECT_THAT(rejection_message("missions: [a.yaml]\nplanners: [" + code + "]\n"),
+              HasSubstr("c.yaml:2: key planners: mine_alone.py is code, which campaigns do not"));
   EXPECT_THAT(rejection_message("missions: [a.yaml]\nset:\n  planner.densty: 3\n"),
               HasSubstr("c.yaml:3: key set.planner.densty is unknown"));
   EXPECT_THAT(rejection_message("missions: [a.yaml]\nvariants:\n  v: {seed: 3}\n"),

@@ -1,0 +1,67 @@
+// Keys of the sections `uniform` and `pb_nbv`.
+#include "missions/config/key_builders.h"
+#include "missions/config/key_sections.h"
+
+namespace skycap::missions::config {
+namespace {
+
+using survey::fixed_views::FixedViewSettings;
+using survey::pb_nbv::PbNbvSettings;
+
+auto fixed(auto member) {
+  return [member](auto& m) -> auto& { return m.planner.fixed_views.*member; };
+}
+auto pb(auto member) {
+  return [member](auto& m) -> auto& { return m.planner.pb_nbv.*member; };
+}
+
+}  // namespace
+
+std::vector<Key> uniform_keys() {
+  return {
+      integer_key("uniform.views", "views", between(1, 1e4), fixed(&FixedViewSettings::views),
+                  "N: total number of views of the planners uniform and random, including the "
+                  "first view. The views are on the sphere of the section volumetric, whose centre "
+                  "and radius are those of the true surface by default."),
+      choice_key("uniform.set", {"fibonacci", "rings", "random"}, fixed(&FixedViewSettings::set),
+                 "Distribution of the views of uniform: Fibonacci lattice, horizontal rings, or "
+                 "independent directions (the planner random)."),
+      integer_key("uniform.rings", "rings", between(1, 1000), fixed(&FixedViewSettings::rings),
+                  "Number of rings of the set rings."),
+      choice_key("uniform.order", {"tour", "spread"}, fixed(&FixedViewSettings::order),
+                 "Order of the views of uniform and random: a short open tour, or each view "
+                 "farthest from the earlier ones."),
+  };
+}
+
+std::vector<Key> pb_nbv_keys() {
+  return {
+      integer_key("pb_nbv.views", "views", between(1, 1e6), pb(&PbNbvSettings::views),
+                  "Total number of views of the planners pb-nbv and pb-nbv-released, which have no "
+                  "stop rule."),
+      integer_key("pb_nbv.candidates", "views", between(1, 1e6), pb(&PbNbvSettings::candidates),
+                  "N: approximate number of candidate views."),
+      integer_key("pb_nbv.parallels", "", between(2, 1000), pb(&PbNbvSettings::parallels),
+                  "alpha: number of parallels on which the candidates are distributed."),
+      integer_key("pb_nbv.sectors", "", between(1, 1000), pb(&PbNbvSettings::sectors),
+                  "beta: number of sectors of the azimuth that are visited before views are chosen "
+                  "freely."),
+      integer_key("pb_nbv.max_ellipsoids", "", between(0, 1000), pb(&PbNbvSettings::max_ellipsoids),
+                  "T_max: maximum number of ellipsoids for occupied voxels, and for frontiers. 0: "
+                  "random choice of candidates (ablation)."),
+      number_key("pb_nbv.growth", "voxels", between(0, 1000), pb(&PbNbvSettings::growth),
+                 "gamma: growth of the box around frontiers."),
+      otherwise("0.06 times the longest edge of the box of the first scan",
+                number_key("pb_nbv.voxel", "m", above(0, 1e3), pb(&PbNbvSettings::voxel),
+                           "Width of the voxels. The paper uses 0.03 m for objects of about 0.5 "
+                           "m.")),
+      otherwise("view distance",
+                number_key("pb_nbv.working_distance", "m", above(0, 1e6),
+                           pb(&PbNbvSettings::working_distance),
+                           "d_c: distance of the candidates from the sphere around the box.")),
+      choice_key("pb_nbv.region", {"sphere", "hemisphere"}, pb(&PbNbvSettings::region),
+                 "Part of the sphere with candidates."),
+  };
+}
+
+}  // namespace skycap::missions::config
