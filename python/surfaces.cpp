@@ -59,8 +59,9 @@ void bind_evaluation(py::module_& module) {
   py::class_<Evaluation>(module, "Evaluation",
                          "Evaluation of a cloud against a reference surface. Distances are those "
                          "of the cloud's\npoints to the surface, in metres.")
-      .def_readonly("coverage", &Evaluation::coverage,
-                    "Fraction of the surface with a point within the coverage distance, in [0, 1].")
+      .def_readonly(
+          "coverage", &Evaluation::coverage,
+          "Fraction of the surface with a point within the coverage distance, from 0 to 1.")
       .def_readonly("mean", &Evaluation::mean, "Mean distance, in metres.")
       .def_readonly("root_mean_square", &Evaluation::root_mean_square,
                     "Root mean square distance, in metres.")

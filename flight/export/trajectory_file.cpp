@@ -182,7 +182,8 @@ std::vector<std::vector<double>> parse_rows(const std::vector<std::string>& line
                          std::to_string(count));
       return rows;
     }
-    if (row->front() <= last_time) problems.push_back(who + "is not later than the previous line");
+    if (row->front() <= last_time)
+      problems.push_back(who + "has a time that is not later than that of the previous line");
     last_time = row->front();
     rows.push_back(*row);
   }

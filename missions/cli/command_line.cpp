@@ -61,9 +61,9 @@ void add_plan(CLI::App& app, const Console& console, Action& action) {
                       "Photo missions: CSV file of surveyed ground control points, "
                       "name,x,y,z or name,latitude,longitude,height");
   command->add_flag("--use-prior-as-truth", keys->uses_prior_as_truth,
-                    "Simulate with the target prior data as ground truth");
+                    "Simulate with the target's prior data as ground truth");
   command->add_flag("--verbose", options->is_verbose,
-                    "Print the planning time per view and part, and lower bounds");
+                    "Print planning times per view and the optimality gap of the tour");
   add_set_option(*command, *keys);
   run_with_keys(*command, options, keys, plan, console, action);
 }
@@ -125,7 +125,7 @@ void add_scan(CLI::App& app, const Console& console, Action& action) {
           "Point formats, one or more of " + scan::cloud_format_names() + " (default: las)")
       ->delimiter(',');
   command->add_flag("--with-truth", options->with_truth,
-                    "Also write the points at their true positions");
+                    "Also write the points at their true positions (ground truth)");
   CLI::Option* const resumes = command->add_flag(
       "--resume", options->resumes, "Resume an interrupted scan in the results folder");
   command
@@ -270,7 +270,7 @@ void add_evaluate(CLI::App& app, const Console& console, Action& action) {
   command->add_flag("--json", options->is_json, "Print the result as JSON");
   command->add_flag("--quiet", options->is_quiet, "Print errors only");
   command->add_option("--density", options->density,
-                      "Folder for the density of all points: raster (GeoTIFF), histograms, shares");
+                      "Folder for the point density: raster (GeoTIFF), histograms and fractions");
   command
       ->add_option(
           "--density-cell", options->density_cell,

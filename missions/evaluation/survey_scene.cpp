@@ -178,11 +178,11 @@ geometry::View SurveyScene::first_view(std::uint64_t seed) const {
   if (!initial_pattern.empty()) return initial_pattern.front();
   if (const auto& start = begins.view) {
     if (!reachable().is_empty()) return *start;
-    throw Error(
-        ErrorKind::bad_config,
-        "start.position is inside the model or enclosed by it: a sphere with a radius of " +
-            metres_text(radius_ + reachable().cell()) +
-            " m does not fit through any opening; move it or lower evaluation.passage_radius");
+    throw Error(ErrorKind::bad_config,
+                "start.position is inside the model or enclosed by it: a sphere with a radius of " +
+                    metres_text(radius_ + reachable().cell()) +
+                    " m does not fit through any opening; move start.position or lower "
+                    "evaluation.passage_radius");
   }
 
   const survey::ViewLimits& limits = options_.survey.planner.limits;

@@ -361,7 +361,7 @@ PackageSummary parse_package_summary(const std::string& text, const std::string&
     }
     return summary;
   } catch (const Json::exception& error) {
-    fail(name, std::string("is not a package's summary (") + error.what() + ")");
+    fail(name, std::string("is not the summary of a package (") + error.what() + ")");
   }
 }
 

@@ -114,7 +114,7 @@ std::string colmap_script(const PhotoPlan& plan, const PoseSigmas& sigmas) {
       "# known (default): COLMAP uses the poses of images.txt. Use it for simulated photos,",
       "# or replace images.txt by the measured poses first.",
       "# unknown: COLMAP estimates the poses, and aligns the model with priors.txt.",
-      "# One thread extracts features: with several, image ids differ from those of images.txt.",
+      "# Features are extracted by one thread, because several threads change the image IDs.",
       "set -eu",
       "images=$1",
       "poses=${2:-known}",

@@ -237,13 +237,12 @@ void apply_photogrammetry_offset(const Source& source, FileContents& contents) {
     contents.crs = found->crs;
     contents.vertical = HeightDatum::ellipsoid;
   }
-  contents.notes.push_back(
-      fmt::format("coordinate offset ({:.3f}, {:.3f}, {:.3f}) read from {}{}", found->offset.x(),
-                  found->offset.y(), found->offset.z(), name,
-                  source.crs.empty() ? ", in " + found->crs +
-                                           "; heights are taken as ellipsoid heights unless "
-                                           "vertical is set"
-                                     : ""));
+  contents.notes.push_back(fmt::format(
+      "coordinate offset ({:.3f}, {:.3f}, {:.3f}) read from {}{}", found->offset.x(),
+      found->offset.y(), found->offset.z(), name,
+      source.crs.empty()
+          ? ", in " + found->crs + "; ellipsoidal heights are assumed unless vertical is set"
+          : ""));
 }
 
 FileContents mesh_contents(const Source& source) {

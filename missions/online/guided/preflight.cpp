@@ -85,7 +85,7 @@ MaybeFailure wait_for_position(mavlink::AutopilotLink& link, double patience,
                           : !state.yaw()      ? "its heading (ATTITUDE)"
                                               : "its battery level (SYS_STATUS)";
     return rejected(
-        fmt::format("timeout: for {:.0f} s the vehicle did not report {}", patience, missing));
+        fmt::format("timeout: the vehicle did not report {1} for {0:.0f} s", patience, missing));
   };
   return wait_until(link, patience, stop, is_complete, late);
 }
@@ -93,7 +93,9 @@ MaybeFailure wait_for_position(mavlink::AutopilotLink& link, double patience,
 MaybeFailure check_pad(const mavlink::VehicleState& state, const FlightFrame& frame,
                        const Vector3d& pad, const GuidedLimits& limits) {
   if (state.heartbeat()->is_armed) {
-    return rejected("the vehicle is armed; a flight begins at the take-off point, disarmed");
+    return rejected(
+        "the vehicle is armed; a flight must begin at the take-off point, with the vehicle "
+        "disarmed");
   }
   const Vector3d off = to_position(state, frame) - pad;
   const double horizontal = off.head<2>().norm();

@@ -50,7 +50,7 @@ function written_parts(data) {
       : part.files.join(", "))), gaps));
   });
   return [element("h3", {}, "Coverage of the route files"),
-    element("p", {}, "Coverage of each route file as read back, in a simulated re-flight from an empty cloud."),
+    element("p", {}, "Each route file is read back and re-flown in simulation, starting from an empty cloud. The table lists the resulting coverage."),
     table(["", number("Views"), number("Coverage"), number("Coverage of visible surface")], rows), ...parts];
 }
 
@@ -65,7 +65,7 @@ function holes_section(data, on_pick) {
   const shown_holes = holes.slice(0, most_holes)
     .filter((hole, i) => i < fewest_holes || hole.area_m2 >= least_hole * total);
   const has_places = data.hole_places.length > 0;
-  const place = (i) => data.hole_places[i].slice(0, 2).map((degrees) => shown(degrees, "place")).join(", ") +
+  const place = (i) => data.hole_places[i].slice(0, 2).map((degrees, k) => shown(degrees, k ? "longitude" : "latitude")).join(", ") +
     ", " + shown(data.hole_places[i][2], "metres");
   const rows = shown_holes.map((hole, i) => [
     element("span", {}, swatch(reason_colour[hole.reason]), reason_text[hole.reason]),
@@ -200,7 +200,7 @@ function flight_section(data) {
     ". Minimum clearance ", f("route.min_clearance_m", "metres"), ", verified for every leg (required ",
     f("clearance_m.total", "metres"), ")."), surveyed_part(data));
   section.append(table(["Sortie", "Views", number("Length"), number("Time"), number("Energy"),
-    number("Left above reserve"), number("Minimum clearance")], sorties_of(data).map((sortie, i) => {
+    number("Energy above reserve"), number("Minimum clearance")], sorties_of(data).map((sortie, i) => {
     const path = "route.sorties." + i + ".";
     return [String(i + 1), sortie.first_station + " to " + sortie.last_station,
       number(f(path + "length_m", "metres")), number(f(path + "duration_s", "minutes")),

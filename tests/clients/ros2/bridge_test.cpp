@@ -188,7 +188,7 @@ TEST_F(Ros2Bridge, KeepsInvalidMessagesOutOfSurvey) {
   arrive();
   odometry(2e9, {700, 0, 0});  // from the future
   odometry(10.0, {9, 9, 9});   // a different pose with the time stamp 10.0
-  EXPECT_THAT(warnings_.back(), HasSubstr("a different pose has the same stamp"));
+  EXPECT_THAT(warnings_.back(), HasSubstr("two different poses have the same timestamp"));
   now_ += 10.0;
   {
     SampleOdometry other(seconds(10.01), {8, 8, 8});
@@ -219,7 +219,7 @@ TEST_F(Ros2Bridge, KeepsInvalidMessagesOutOfSurvey) {
   SampleCloud stampless(0, {{1, 2, 3}});
   now_ += 10.0;
   bridge_->receive(stampless.message, now_);
-  EXPECT_THAT(warnings_.back(), HasSubstr("its stamp is not set"));
+  EXPECT_THAT(warnings_.back(), HasSubstr("its timestamp is not set"));
   EXPECT_THAT(poses_, SizeIs(1));
   cloud(10.5);  // valid again
   proceed();
