@@ -88,7 +88,8 @@ void bind_surfaces(py::module_& module) {
   py::class_<Mesh>(
       module, "Mesh",
       "A triangle mesh: Mesh(vertices, triangles). The vertices are (N, 3) float64 in metres,\n"
-      "z up. The triangles are (M, 3) uint32, anticlockwise seen from outside. Both are copied.")
+      "z up. The triangles are (M, 3) uint32, counter-clockwise seen from outside. Both are "
+      "copied.")
       .def(py::init(&mesh_from), py::arg("vertices"), py::arg("triangles"))
       .def_property_readonly(
           "vertices",

@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 void aim_at(FlightPlan& plan, const ScannerAim& aim) {
   for (Waypoint& waypoint : plan.waypoints) {
     if (!waypoint.is_capture_point) continue;
-    waypoint.yaw -= aim.azimuth;  // Headings are clockwise, azimuths anticlockwise.
+    waypoint.yaw -= aim.azimuth;  // Headings are clockwise, azimuths counter-clockwise.
     waypoint.pitch = aim.pitch;
     waypoint.captures = 0;
   }

@@ -372,7 +372,7 @@ class MissionFlight {
                                    " m; it must be 0 or at least 0.1 m");
     }
     if (item.params[2] != 0.0 && spacing > 0.0) {
-      return add_problem(item, "captures an image at once; set parameter 3 to 0");
+      return add_problem(item, "captures an image immediately; set parameter 3 to 0");
     }
     photo_spacing_ = spacing;
   }

@@ -35,7 +35,7 @@ const char* to_string(GroundSource source) {
     case GroundSource::declared:
       return "as declared";
     case GroundSource::terrain:
-      return "by the terrain";
+      return "in the terrain data";
     case GroundSource::scene:
       return "in the scene";
   }

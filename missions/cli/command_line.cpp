@@ -245,7 +245,7 @@ void add_evaluate(CLI::App& app, const Console& console, Action& action) {
   CLI::App* command =
       app.add_subcommand("evaluate", "Compare a point cloud or mesh with a reference model");
   const auto options = std::make_shared<EvaluateOptions>();
-  CLI::App* what = command->add_option_group("what is evaluated");
+  CLI::App* what = command->add_option_group("evaluated data");
   what->add_option("--cloud", options->cloud, "Point cloud: .ply, .pcd, .las, .laz, .e57 or .xyz");
   what->add_option("--mesh", options->mesh,
                    "Mesh instead of a cloud, for example from skycap reconstruct");

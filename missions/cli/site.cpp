@@ -202,7 +202,7 @@ std::optional<int> show_objects(const SiteOptions& options, const wizard::SiteRe
   console.out
       << fmt::format(
              "{}: contains {} objects, {}{}; no mission written\n  map       {}\n  next      "
-             "open the map and click on the target, or choose it with --at "
+             "open the map and click the target, or choose it with --at "
              "LATITUDE,LONGITUDE, --id or --attribute\n",
              options.map.string(), objects.size(), some, objects.size() > 5 ? ", ..." : "",
              page.string())
@@ -293,10 +293,9 @@ void add_site(CLI::App& app, const Console& console, Action& action) {
   command->add_option("--obstacle", options->obstacles, "Further file with obstacles")
       ->type_size(1)
       ->allow_extra_args(false);
-  command->add_option(
-      "--vehicle", options->vehicle,
-      "Vehicle preset or file (default: the preset with the photo camera, otherwise "
-      "generic)");
+  command->add_option("--vehicle", options->vehicle,
+                      "Vehicle preset or file (default: the preset that carries the photo camera, "
+                      "otherwise generic)");
   command->add_option(
       "--sensor", options->sensor,
       "Sensor preset (skycap presets) or LiDAR file NAME.yaml (default: the vehicle's "

@@ -41,8 +41,9 @@ std::vector<Key> which_planner() {
               "planner.name", planner_words(), [](auto& m) -> auto& { return m.planner.name; },
               "Planner. skycap: the planner of this program; uses spacing, view_distance, "
               "scene_box, target_coverage and min_gain of the keys below. see++: SEE++. see: "
-              "see++ without optimise_views and visibility_graph. The others are volumetric and "
-              "use resolution_radius as voxel width, spacing, view_distance, scene_box and the "
+              "see++ without optimise_views and visibility_graph. The other planners are "
+              "volumetric and use resolution_radius as voxel width, spacing, view_distance, "
+              "scene_box and the "
               "section volumetric.")),
       choice_key(
           "planner.preset", {"paper", "building"},

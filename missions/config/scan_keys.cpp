@@ -30,7 +30,7 @@ std::vector<Key> orbit_keys() {
       number_key("scan.orbit.speed", "m/s", above(0, 100), orbit(&Orbit::speed),
                  "Speed along the circles and the climbs between them."),
       angle_key("scan.orbit.start_deg", between(-360, 360), orbit(&Orbit::start),
-                "Start of the circles: direction from the centre, anticlockwise from east."),
+                "Start of the circles: direction from the centre, counter-clockwise from east."),
   };
 }
 

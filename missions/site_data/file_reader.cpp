@@ -199,7 +199,8 @@ Opened open_file(const fs::path& file, Role role) {
   }
   if (!format) {
     fail_file(file,
-              "has an unsupported format; supported: CityGML, CityJSON, GeoJSON, GPKG, Shapefile, "
+              "has an unsupported format; supported formats: CityGML, CityJSON, GeoJSON, GPKG, "
+              "Shapefile, "
               "KML, KMZ, OSM, DXF, GeoTIFF, ASCII grid, XYZ, LAS, E57, glTF, Collada, FBX, IFC, "
               "PLY, OBJ, STL, OFF, PCD");
   }

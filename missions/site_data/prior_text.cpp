@@ -15,7 +15,7 @@ std::string describe_contents(const Prior& prior) {
   if (!prior.objects.empty()) {
     std::size_t triangles = 0;
     for (const Object& object : prior.objects) triangles += object.mesh.triangles.size();
-    add(fmt::format("{} objects of {} triangles", prior.objects.size(), triangles));
+    add(fmt::format("{} objects with {} triangles", prior.objects.size(), triangles));
   }
   if (!prior.points.empty()) add(fmt::format("{} points", prior.points.size()));
   if (prior.grid.rows > 0) {

@@ -159,8 +159,8 @@ class Planner {
     throw Error(ErrorKind::bad_geometry,
                 "only " + percent_text(static_cast<double>(exposed) / static_cast<double>(all)) +
                     " of the target's surface is exposed (at least 10% is required): the model is "
-                    "inside out, an interior model, or below the ground; check its units, its "
-                    "position and prior.exclude");
+                    "inside out, an interior model, or below the ground; check the unit and the "
+                    "position of the prior data, and exclude other objects with select");
   }
 
   PatternOptions pattern_options() const {
@@ -339,10 +339,11 @@ class Planner {
                                  "photo.poses: unknown, which adds connecting photos");
       return;
     }
-    throw Error(ErrorKind::bad_config,
-                "photo.poses: unknown requires photos that register to one another, but " + what +
-                    ", or a photo registers to fewer than 3 others; raise photo.max_photos or "
-                    "photo.gsd, or set photo.poses: known (RTK or PPK)");
+    throw Error(
+        ErrorKind::bad_config,
+        "photo.poses: unknown requires photos that register to one another, but " + what +
+            ", or a photo can be registered to fewer than 3 others; raise photo.max_photos or "
+            "photo.gsd, or set photo.poses: known (RTK or PPK)");
   }
 
   PhotoFigures evaluated(const std::vector<geometry::View>& views, const Observer& evaluator) {

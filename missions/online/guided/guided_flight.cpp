@@ -190,7 +190,7 @@ MaybeFailure GuidedFlight::fly_leg(const Vector3d& to) {
       listen();  // Processes messages received during the stall.
       failure =
           FlightFailure{FailureKind::stalled,
-                        fmt::format("set points were interrupted for {:.1f} s because this program "
+                        fmt::format("setpoints were interrupted for {:.1f} s because this program "
                                     "was suspended; stopping at the current position",
                                     late)};
     } else {

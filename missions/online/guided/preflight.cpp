@@ -52,8 +52,8 @@ MaybeFailure check_kind(const mavlink::HeardHeartbeat& heard) {
   const bool is_copter = std::ranges::find(multicopters, heard.type) != multicopters.end();
   if (heard.autopilot == ardupilot && is_copter) return std::nullopt;
   return rejected(
-      fmt::format("unsupported vehicle: the autopilot is number {} and the type {}; only "
-                  "ArduCopter is supported (autopilot 3, a multicopter type)",
+      fmt::format("unsupported vehicle: MAV_AUTOPILOT {}, MAV_TYPE {}; only ArduCopter is "
+                  "supported (MAV_AUTOPILOT 3 and a multicopter type)",
                   heard.autopilot, heard.type));
 }
 
@@ -115,8 +115,8 @@ MaybeFailure check_timeout(mavlink::AutopilotLink& link) {
   const std::optional<double> timeout = link.parameter("GUID_TIMEOUT");
   if (!timeout || (*timeout >= shortest && *timeout <= longest)) return std::nullopt;
   return rejected(
-      fmt::format("parameter GUID_TIMEOUT must be from {:g} to {:g} s; it is {:g} s; set "
-                  "it to 3 and repeat the command",
+      fmt::format("parameter GUID_TIMEOUT must be from {:g} to {:g} s, but is {:g} s; set it to 3 "
+                  "and repeat the command",
                   shortest, longest, *timeout));
 }
 

@@ -175,7 +175,7 @@ Message Session::answer_unguarded(const Message& message) {
   if (type == "scan") return add_scan(message);
   if (type == "refuse") return reject(message);
   if (type == "finish") {
-    if (survey_.views().empty()) reject_message("finish: no scan yet");
+    if (survey_.views().empty()) reject_message("finish: no scan has been accepted yet");
     Message answer{{{"type", "finished"}, {"text", finish_()}}, {}};
     is_finished_ = true;
     return answer;

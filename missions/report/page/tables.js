@@ -273,7 +273,7 @@ const how_surveyed = [
   ["Coverage (ground truth)", "Fraction of samples, evenly distributed over the surface of the simulated model, that have a measurement within the coverage distance. It is not used by the planner. Visible surface: samples that a sensor can see from an admissible view."],
   ["Uncovered surface", "Surface patches that are more likely uncovered than covered, grouped by neighbourhood and reason. The area of a gap is the uncovered part of its patches. Scattered gaps are the predicted uncovered part of covered surface. The total is the surface area times (1 - coverage)."],
   ["Verified clearance", "Lower bound of the distance from the vehicle centre to any measured point, no-fly volume or unknown space, over the whole leg."],
-  ["Times and energy", "Estimates from the vehicle file, including stops, turns and hovering, at the wind and battery temperature of the mission."],
+  ["Times and energy", "Estimates from the vehicle file, including stops, turns and hovering, for the wind and battery temperature of the mission."],
   ["Predicted error", "Standard error of the mean if all points within the coverage distance are averaged, for a sample of the points. It uses the noise estimated by the planner, otherwise sensor.noise; noise along a ray is multiplied by the cosine of the incidence. Correlated errors, such as a wrong sensor position, are not included."],
   ["Incidence and range", "Computed from the normal of each point (plane through its neighbours) and the sensor position of its scan."],
   ["Free-space boundary", "Faces between free voxels and unknown or occupied voxels; an evenly distributed subset if there are many. The route is verified to keep its clearance from all of them."],

@@ -155,8 +155,7 @@ TEST(DepthScan, RejectsImagesWithInconsistentSizes) {
     return thrown_message([&] { make_scan(image.message, intrinsics); });
   };
   EXPECT_THAT(error_message([](Image& i) { i.step = 7; }), HasSubstr("4 times 2 require more"));
-  EXPECT_THAT(error_message([](Image& i) { i.step = 9; }),
-              HasSubstr("it must have 2 x 9"));
+  EXPECT_THAT(error_message([](Image& i) { i.step = 9; }), HasSubstr("it must have 2 x 9"));
   EXPECT_THAT(error_message([](Image& i) { i.data._length = 15; }), HasSubstr("it has 15 bytes"));
   EXPECT_THAT(error_message([](Image& i) { i.width = 0; }), HasSubstr("from 1 to 32768"));
   EXPECT_THAT(error_message([](Image& i) { i.height = 0xFFFFFFFF; }), HasSubstr("from 1 to 32768"));

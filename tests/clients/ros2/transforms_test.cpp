@@ -108,7 +108,8 @@ TEST_F(TransformTree, RejectsCyclesAndTooLongChains) {
 TEST_F(TransformTree, RejectsInvalidTransforms) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   add(10.0, {"base_link", "gimbal"});
-  EXPECT_THAT(error_message(10.0, {"base_link", "gimbal", {1, 0, 0}}), HasSubstr("the same timestamp"));
+  EXPECT_THAT(error_message(10.0, {"base_link", "gimbal", {1, 0, 0}}),
+              HasSubstr("the same timestamp"));
   EXPECT_THAT(error_message(10.1, {"mast", "gimbal"}), HasSubstr("it must remain 'base_link'"));
   EXPECT_THAT(error_message(10.1, {"base_link", "gimbal"}, true),
               HasSubstr("must not be both static and moving"));

@@ -115,7 +115,8 @@ TEST(WrittenMission, ViewsWithoutAReturnAreMissingFromTheFigures) {
             summary.at("coverage_visible").get<double>() - 0.01);
   EXPECT_THAT(beside().out, HasSubstr("  mission   route files, "));
   EXPECT_THAT(beside().out, HasSubstr("Warning: view "));
-  EXPECT_THAT(beside().out, HasSubstr("move flight.takeoff more than 54 m (horizontal distance) away"));
+  EXPECT_THAT(beside().out,
+              HasSubstr("move flight.takeoff more than 54 m (horizontal distance) away"));
 }
 
 TEST(WrittenMission, FormatsThatCaptureTheSameShareTheirFigures) {

@@ -267,7 +267,7 @@ INSTANTIATE_TEST_SUITE_P(
                        "rejected the command (result 4) to turn the gimbal; configure"},
         GroundedFlight{"short_timeout",
                        {.guided_timeout = 0.2F},
-                       "GUID_TIMEOUT must be from 0.5 to 5 s; it is 0.2 s"},
+                       "GUID_TIMEOUT must be from 0.5 to 5 s, but is 0.2 s"},
         GroundedFlight{"flat_battery", {.battery = 0.265}, "battery at 26%"}),
     [](const auto& test) { return test.param.name; });
 
