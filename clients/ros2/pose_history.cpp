@@ -31,7 +31,8 @@ BodyPose between(const BodyPose& a, const BodyPose& b, double share) {
 
 Stamp to_stamp(const Header& header) {
   if (header.stamp.nanosec >= 1'000'000'000U) {
-    throw Error(ErrorKind::bad_geometry, "the nanoseconds of its timestamp must be less than 1e9");
+    throw Error(ErrorKind::bad_geometry,
+                "the nanoseconds of its timestamp must be less than 1,000,000,000");
   }
   const Stamp stamp = Stamp{header.stamp.sec} * 1'000'000'000 + header.stamp.nanosec;
   if (stamp <= 0) throw Error(ErrorKind::bad_geometry, "its timestamp is not set");

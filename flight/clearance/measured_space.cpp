@@ -32,7 +32,7 @@ void MeasuredSpaceConfig::validate() const {
     if (box.isEmpty()) return;
     const double farthest = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff();
     require(is_near(box.min()) && is_near(box.max()), name, farthest,
-            "within 100,000 voxels and 1e7 m of the origin");
+            "within 100,000 voxels and 10,000 km of the origin");
   };
   require_near(region, "measured_space.region");
   for (const AlignedBox3d& box : extra_boxes) require_near(box, "measured_space.beside");

@@ -103,7 +103,7 @@ MeasuredSpaceFile read_measured_space(std::istream& stream, const std::string& n
     if (!geometry::is_valid_position(low)) {
       throw Error(ErrorKind::bad_file,
                   name + ": is damaged: block " + std::to_string(i) +
-                      " is more than 1e7 m from the origin; plan the mission again");
+                      " is more than 10,000 km from the origin; plan the mission again");
     }
     file.blocks.push_back(block);
   }

@@ -195,7 +195,7 @@ std::vector<std::vector<double>> csv_rows(const std::string& text, Frame& frame,
                                           Problems& problems) {
   const std::vector<std::string> lines = split_lines(text);
   if (lines.size() < 2 || (lines[0] != enu_comment && lines[0] != ned_comment)) {
-    problems.emplace_back("line 1 must name the frame, ENU or NED");
+    problems.emplace_back("line 1 must specify the frame, ENU or NED");
     return {};
   }
   frame = lines[0] == enu_comment ? Frame::enu : Frame::ned;

@@ -51,7 +51,7 @@ constexpr std::array wayline_waypoint_rules{
     OnlyValue{"useStraightLine", "1", "leaves the straight legs"}};
 
 constexpr std::array group_rules{
-    OnlyValue{"actionGroupMode", "sequence", "is triggered at any time"}};
+    OnlyValue{"actionGroupMode", "sequence", "does not execute its actions in sequence"}};
 
 constexpr std::array gimbal_rules{
     OnlyValue{"gimbalRotateMode", "absoluteAngle", "sets a relative instead of an absolute pitch"},

@@ -38,9 +38,9 @@ std::string remedy_for(const ReturnVerification& failed) {
              "the vehicle climbs before it returns and no level return is required";
     case ReturnPart::climb:
       return failed.closest.kind == ObstacleKind::unknown_space
-                 ? "survey the space above the view as well (raise site.max_height, lower "
-                   "planner.min_gain), or lower the top of flight.unknown_box to the height of the "
-                   "tallest possible obstacle"
+                 ? "survey the space above the view (raise site.max_height, lower "
+                   "planner.min_gain), or lower the top of flight.unknown_box to the maximum "
+                   "obstacle height"
                  : "raise planner.view_distance so that views keep away from overhangs";
     case ReturnPart::level:
       return over_remedy;

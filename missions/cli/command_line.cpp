@@ -95,7 +95,7 @@ void add_benchmark(CLI::App& app, const Console& console, Action& action) {
       ->check(CLI::Range(1, 100'000));
   command->add_option(
       "--out", options->out,
-      "Folder for the results (default: results/benchmark). Finished runs are not repeated");
+      "Folder for the results (default: results/benchmark). Completed runs are not repeated");
   command
       ->add_option("--threads", options->threads, "Number of parallel surveys (0: all processors)")
       ->check(CLI::Range(0, 1024));
@@ -293,7 +293,7 @@ void add_reconstruct(CLI::App& app, const Console& console, Action& action) {
                    "Point cloud (.ply, .pcd, .las, .laz, .e57, .xyz), with or without normals")
       ->required();
   command->add_option("--out", options->out, "PLY, OBJ, STL or OFF file (default: CLOUD_mesh.ply)");
-  command->add_option("--spacing", options->spacing, "Voxel size of downsampling in metres")
+  command->add_option("--spacing", options->spacing, "Voxel size for downsampling in metres")
       ->check(number_between(0.0, 1e6));
   command
       ->add_option("--depth", options->depth,

@@ -342,7 +342,7 @@ int init(const InitOptions& options, const Console& console) {
   }
   if (fs::exists(options.out)) {
     throw Error(ErrorKind::bad_usage,
-                options.out.string() + " already exists; choose another --out or remove the file");
+                options.out.string() + " already exists; use another --out or move the file");
   }
   if (!options.gsd && wizard::is_photo_camera(options.sensor)) {
     throw Error(ErrorKind::bad_usage, "--sensor " + options.sensor +

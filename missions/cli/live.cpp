@@ -109,7 +109,7 @@ void add_scan(const NextOptions& options, const std::string& name, const online:
   const bool is_aside = is_new && survey.proposal().has_pose_warning();
   console.err << fmt::format("{}: {} points{}{}{}\n", name, found.scan.points.size(),
                              is_new ? "" : "; already known, ignored",
-                             is_aside ? "; rejected, pose inconsistent with the map" : "",
+                             is_aside ? "; rejected: pose inconsistent with the map" : "",
                              left_out_text(found))
               << std::flush;
 }

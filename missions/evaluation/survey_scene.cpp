@@ -199,8 +199,8 @@ geometry::View SurveyScene::first_view(std::uint64_t seed) const {
   throw Error(ErrorKind::bad_config,
               "no random start view at the view distance of " + metres_text(view_distance_) +
                   " m satisfies limits.ground_clearance, the gimbal's pitch limits, "
-                  "evaluation.passage_radius, the "
-                  "site and flight.unknown_box; relax them or set start.position");
+                  "evaluation.passage_radius, the site limits and flight.unknown_box; relax these "
+                  "limits or set start.position");
 }
 
 Admissible SurveyScene::admissible() const {

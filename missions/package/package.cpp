@@ -379,7 +379,8 @@ PackagedSurvey read_package(const std::filesystem::path& folder,
                             const std::vector<config::KeyOverride>& overrides) {
   PackageSummary summary = read_package_summary(folder, overrides);
   if (!summary.pad) {
-    fail(folder / summary_name, "is a survey without a vehicle; plan it with flight.vehicle");
+    fail(folder / summary_name,
+         "is a survey without a vehicle; plan the survey with flight.vehicle");
   }
   if (summary.mission.flight().views == flight::MissionViews::replanned && !summary.has_choice) {
     fail(folder / summary_name,

@@ -126,7 +126,7 @@ std::string trigger_text(const config::MissionSetup& setup) {
   if (!setup.flight().has_vehicle()) return "No vehicle: photos.csv lists the positions.";
   return setup.flight().style == flight::FlightStyle::pass
              ? "Photos on straight legs with even spacing are taken in flight, all others at stops."
-             : "The vehicle stops at each photo; the route file triggers it.";
+             : "The vehicle stops at each photo; the route file triggers the camera.";
 }
 
 double storage_bytes(const survey::photo::PhotoPlan& plan) {

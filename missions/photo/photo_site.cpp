@@ -26,11 +26,10 @@ void require_inside_fence(const config::MissionSetup& setup, const geometry::Mes
   if (fence.empty() || geometry::contains(fence, centre.head<2>())) return;
   throw Error(
       ErrorKind::bad_config,
-      fmt::format(
-          "the target is outside site.geofence: the centre of its base is at "
-          "({:.1f}, {:.1f}, {:.1f}) m of the mission frame; set the keys crs and offset, or the "
-          "key place, of the prior data to the values of the program that wrote the file",
-          centre.x(), centre.y(), box.min().z()));
+      fmt::format("the target is outside site.geofence: the centre of its base is at ({:.1f}, "
+                  "{:.1f}, {:.1f}) m in the mission frame; set the keys crs and offset, or the "
+                  "key place, of the prior data to the values of the program that wrote the file",
+                  centre.x(), centre.y(), box.min().z()));
 }
 
 geometry::Mesh select_targets(const config::MissionSetup& setup) {

@@ -87,8 +87,8 @@ std::string plan_text(const config::MissionSetup& setup, const PhotoMission& mis
         result.bound.photos, result.repaired_photos);
   }
   if (result.connecting > 0) {
-    text +=
-        fmt::format("  graph     {} photos added so that all photos register\n", result.connecting);
+    text += fmt::format("  graph     {} photos added so that all photos can be registered\n",
+                        result.connecting);
   }
   return text + patterns_text(mission) +
          "  limits    windows, glass, water, thin wires and plain walls are not modelled\n";

@@ -21,7 +21,7 @@ struct OrbitOptions {
   double max_height = 30.0;  ///< Height of the last circle [m].
   int circles = 3;           ///< Number of circles, at equal height intervals.
   double speed = 6.0;        ///< Speed on circles and climbs [m/s].
-  double start = 0.0;        ///< Start angle of the circles, counter-clockwise from east [rad].
+  double start = 0.0;        ///< Start angle of the circles, anticlockwise from east [rad].
 };
 
 /// Coordinate system of the LAS and E57 files of a scan.

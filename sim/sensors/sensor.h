@@ -1,6 +1,6 @@
 /// Laser scanner models, as described in sim/sensors/presets/*.yaml.
 ///
-/// Sensor frame: x forward, y left, z up. A rotating sensor turns around z, counter-clockwise from
+/// Sensor frame: x forward, y left, z up. A rotating sensor turns around z, anticlockwise from
 /// above for a positive rate. Azimuth is the angle from x towards y; elevation is the angle above
 /// the x-y plane. A rosette sensor looks along x.
 #pragma once

@@ -277,7 +277,7 @@ const how_surveyed = [
   ["Predicted error", "Standard error of the mean if all points within the coverage distance are averaged, for a sample of the points. It uses the noise estimated by the planner, otherwise sensor.noise; noise along a ray is multiplied by the cosine of the incidence. Correlated errors, such as a wrong sensor position, are not included."],
   ["Incidence and range", "Computed from the normal of each point (plane through its neighbours) and the sensor position of its scan."],
   ["Free-space boundary", "Faces between free voxels and unknown or occupied voxels; an evenly distributed subset if there are many. The route is verified to keep its clearance from all of them."],
-  ["Density", "Number of neighbours within " + density_reach + " times the typical point spacing, divided by the area of that disc. Scaled up if the page shows a subset of the points."],
+  ["Density", "Number of neighbours within " + density_reach + " times the typical point spacing, divided by the area of a disc with this radius. Scaled up if the page shows a subset of the points."],
 ];
 
 const how_compared = [

@@ -200,8 +200,8 @@ TEST(CloudIo, ReportsCauseForInvalidLasFiles) {
   } cases[] = {
       {"LASF", "is not a LAS file"},
       {std::string(500, 'x'), "is not a LAS file"},
-      {with(25, 5), "is LAS 1.5 with points of format 6; supported are LAS 1.0 to 1.4"},
-      {with(104, 11), "is LAS 1.4 with points of format 11; supported are LAS 1.0 to 1.4"},
+      {with(25, 5), "is LAS 1.5 with points of format 6; supported: LAS 1.0 to 1.4"},
+      {with(104, 11), "is LAS 1.4 with points of format 11; supported: LAS 1.0 to 1.4"},
       {with(104, 0x86), "is compressed (LAZ), but the LAZ record is missing"},
       {with(105, 20), "has points of 20 bytes; those of format 6 have 30"},
       {with(96, 0), "has a point offset inside its header"},
