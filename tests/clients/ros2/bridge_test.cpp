@@ -122,7 +122,7 @@ TEST_F(Ros2Bridge, WarnsAboutPoseGapsDuringSettling) {
   for (const double time : times) transforms(time, {{"map", "base_link", {5, 0, -0.5}}});
   cloud(9.72);
   proceed();
-  EXPECT_THAT(warnings_.back(), HasSubstr("of 'base_link': nothing within 0.1 s"));
+  EXPECT_THAT(warnings_.back(), HasSubstr("frame 'base_link': no pose within 0.1 s"));
   EXPECT_THAT(scans_, IsEmpty());
 }
 
@@ -173,7 +173,7 @@ TEST_F(Ros2Bridge, HoldsScansForOdometryUntilTimeout) {
   EXPECT_NEAR(poses_[0][3], 1.0 + 0.75 * 2 / 3, 1e-9);
   cloud(11.0);
   proceed(0.6);
-  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("its pose is unknown: nothing within 0.1 s")));
+  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("its pose is unknown: no pose within 0.1 s")));
   EXPECT_THAT(poses_, SizeIs(1));
 }
 
