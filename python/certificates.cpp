@@ -80,7 +80,7 @@ void bind_certificate(py::module_& module) {
             warn_deprecated_name("is_proven", "is_clear");
             return c.verification.is_verified;
           },
-          "The former name of is_clear.")
+          "Former name of is_clear.")
       .def_property_readonly(
           "clearance", [](const Certificate& c) { return c.verification.clearance; },
           "Verified lower bound of the distance over the leg, in metres; at most 10 m above "

@@ -119,8 +119,8 @@ void bind_simulation(py::module_& module) {
 
 void bind_missions(py::module_& module) {
   py::class_<Mission>(module, "Mission",
-                      "A mission file, read, checked and completed with defaults as `skycap plan` "
-                      "does. Immutable. Created by\n"
+                      "A mission file, read, checked and completed with defaults as by `skycap "
+                      "plan`. Immutable. Created by\n"
                       "Mission.load and Mission.parse.")
       .def_static("load", &load, py::arg("file"), py::arg("set") = py::none(),
                   "load(file, set=None)\n--\n\nReads a mission file. `set` maps keys such as "

@@ -111,7 +111,7 @@ void bind_scans(py::module_& module) {
       "`skycap scan --route`. None: from the mission.\n"
       "\n"
       "Fields: xyz (3 x float64, world frame, in metres); time (float64, of the pulse, in\n"
-      "seconds); intensity (float32, in [0, 1]); scan_angle (float32, azimuth in the\n"
+      "seconds); intensity (float32, from 0 to 1); scan_angle (float32, azimuth in the\n"
       "sensor's frame, in radians); triangle (uint32, of the scene); channel (uint16);\n"
       "return_number (uint8, from 1); returns_of_shot (uint8).");
 }

@@ -59,8 +59,9 @@ void bind_evaluation(py::module_& module) {
   py::class_<Evaluation>(module, "Evaluation",
                          "Evaluation of a cloud against a reference surface. Distances are those "
                          "of the cloud's\npoints to the surface, in metres.")
-      .def_readonly("coverage", &Evaluation::coverage,
-                    "Fraction of the surface with a point within the coverage distance, in [0, 1].")
+      .def_readonly(
+          "coverage", &Evaluation::coverage,
+          "Fraction of the surface with a point within the coverage distance, from 0 to 1.")
       .def_readonly("mean", &Evaluation::mean, "Mean distance, in metres.")
       .def_readonly("root_mean_square", &Evaluation::root_mean_square,
                     "Root mean square distance, in metres.")
@@ -87,7 +88,8 @@ void bind_surfaces(py::module_& module) {
   py::class_<Mesh>(
       module, "Mesh",
       "A triangle mesh: Mesh(vertices, triangles). The vertices are (N, 3) float64 in metres,\n"
-      "z up. The triangles are (M, 3) uint32, anticlockwise seen from outside. Both are copied.")
+      "z up. The triangles are (M, 3) uint32, counter-clockwise seen from outside. Both are "
+      "copied.")
       .def(py::init(&mesh_from), py::arg("vertices"), py::arg("triangles"))
       .def_property_readonly(
           "vertices",

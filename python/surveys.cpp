@@ -61,7 +61,7 @@ void bind_surveys(py::module_& module) {
           "or\n'no_reachable_view'.")
       .def_readonly("views", &Survey::views, "The views in order.")
       .def_property_readonly("coverage", &Survey::coverage,
-                             "Covered fraction of the surface at the end, in [0, 1].")
+                             "Covered fraction of the surface at the end, from 0 to 1.")
       .def_property_readonly(
           "coverages",
           [](const py::object& self) {

@@ -92,7 +92,7 @@ void Bridge::add_odometry(const Odometry& odometry) {
   require_same(world_frame_, printable_text(odometry.header.frame_id), "its frame");
   require_same(body_frame_, printable_text(odometry.child_frame_id), "its child frame");
   if (history_.add(stamp, pose) == PoseHistory::Added::contradicts) {
-    throw Error(ErrorKind::bad_geometry, "a different pose has the same stamp");
+    throw Error(ErrorKind::bad_geometry, "two different poses have the same timestamp");
   }
   newest_pose_ = stamp;
   locate();
@@ -153,8 +153,8 @@ void Bridge::add_scan(const Header& header, double now, const std::function<Sens
   if (!wants_scan(now)) return;
   if (stamp <= last_added_) {
     throw Error(ErrorKind::bad_geometry,
-                "its stamp must be later than that of the last accepted scan; it is a duplicate, "
-                "arrived late, or the robot's clock was set back");
+                "its timestamp must be later than that of the last accepted scan; the scan is a "
+                "duplicate, it arrived late, or the robot's clock was set back");
   }
   waiting_ = Waiting{stamp, now, scan()};
 }
@@ -266,11 +266,10 @@ void Bridge::submit_scan(const Waiting& waiting, const PoseState& pose_state, do
   asked_at_ = now;
   learn(answer, from);
   if (!is_suspended_) return;
-  warn_throttled(
-      "pose",
-      "scan rejected: pose inconsistent with the map. Hold position, correct the pose, and "
-      "send the command 'take'",
-      now);
+  warn_throttled("pose",
+                 "scan rejected: pose inconsistent with the map. Hold position, correct the pose "
+                 "and send the command 'take'",
+                 now);
 }
 
 void Bridge::receive(const String& command, double now) {

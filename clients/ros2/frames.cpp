@@ -46,7 +46,7 @@ BodyPose checked_pose(const Vector3d& position, const QuaternionMessage& given) 
   if (!position.allFinite()) reject("its position is not finite");
   constexpr double farthest = 1e7;  // Limit of all external positions [m].
   if (position.cwiseAbs().maxCoeff() > farthest)
-    reject("its position is more than 1e7 m from the origin");
+    reject("its position is more than 10,000 km from the origin");
   const Quaterniond turn(given.w, given.x, given.y, given.z);
   if (!is_unit_length(turn)) reject("its quaternion must have unit length");
   return {.position = position, .turn = turn.normalized(), .covariance = {}};

@@ -31,10 +31,11 @@ BodyPose between(const BodyPose& a, const BodyPose& b, double share) {
 
 Stamp to_stamp(const Header& header) {
   if (header.stamp.nanosec >= 1'000'000'000U) {
-    throw Error(ErrorKind::bad_geometry, "its stamp has 1e9 or more nanoseconds");
+    throw Error(ErrorKind::bad_geometry,
+                "the nanoseconds of its timestamp must be less than 1,000,000,000");
   }
   const Stamp stamp = Stamp{header.stamp.sec} * 1'000'000'000 + header.stamp.nanosec;
-  if (stamp <= 0) throw Error(ErrorKind::bad_geometry, "its stamp is not set");
+  if (stamp <= 0) throw Error(ErrorKind::bad_geometry, "its timestamp is not set");
   return stamp;
 }
 
@@ -61,14 +62,14 @@ PoseMatch PoseHistory::at(Stamp stamp) const {
                               ? config_.longest_gap + 1.0
                               : static_cast<double>(after->first - stamp) * seconds_per_nanosecond;
   if (to_after > config_.longest_gap) {
-    return {open, {}, "nothing within " + rounded(config_.longest_gap, "s") + " after it"};
+    return {open, {}, "no pose within " + rounded(config_.longest_gap, "s") + " after it"};
   }
   const double from_before =
       after == poses_.begin()
           ? config_.longest_gap + 1.0
           : static_cast<double>(stamp - std::prev(after)->first) * seconds_per_nanosecond;
   if (from_before > config_.longest_gap) {
-    return {open, {}, "nothing within " + rounded(config_.longest_gap, "s") + " before it"};
+    return {open, {}, "no pose within " + rounded(config_.longest_gap, "s") + " before it"};
   }
   const BodyPose &a = std::prev(after)->second, &b = after->second;
   const double time = from_before + to_after;

@@ -76,8 +76,8 @@ void require_whole(const Rows& rows) {
            text(rows.size) + " require more");
   }
   if (std::uint64_t{rows.step} * rows.height != rows.data) {
-    reject("it has " + text(rows.data) + " bytes; " + text(rows.height) + " rows of " +
-           text(rows.step) + " are a different number");
+    reject("it has " + text(rows.data) + " bytes; it must have " + text(rows.height) + " x " +
+           text(rows.step) + " (rows x bytes per row)");
   }
 }
 

@@ -14,11 +14,11 @@ namespace {
 [[noreturn]] void reject(const std::string& what) { throw Error(ErrorKind::bad_geometry, what); }
 
 std::string checked_frame_name(const char* text, const std::string& what) {
-  if (text == nullptr || *text == '\0') reject("a transform whose " + what + " has no name");
+  if (text == nullptr || *text == '\0') reject("the " + what + " frame of a transform has no name");
   // printable_text() truncates longer names, which could then collide.
   constexpr std::size_t longest = 100;
   if (::strnlen(text, longest + 1) > longest) {
-    reject("a transform whose " + what + " has a name longer than 100 bytes");
+    reject("the name of the " + what + " frame of a transform is longer than 100 bytes");
   }
   return printable_text(text);
 }
@@ -65,7 +65,7 @@ void Transforms::add(const TransformStamped& transform, bool is_static) {
   if (is_static) {
     frame.fixed = pose;
   } else if (frame.history.add(stamp, pose) == PoseHistory::Added::contradicts) {
-    reject(what + " has a different pose with the same stamp");
+    reject(what + " has two different poses for the same timestamp");
   }
   frame.last = pose;
   frame.last_stamp = stamp;
@@ -92,10 +92,10 @@ Transforms::Found Transforms::find(const std::string& target, const std::string&
   using enum PoseMatch::State;
   const std::vector<std::string> up = up_from(source), down = up_from(target);
   if (up.empty() || down.empty()) {
-    return {
-        {rejected,
-         {},
-         "the frames above '" + source + "' and '" + target + "' form a loop or are more than 64"}};
+    return {{rejected,
+             {},
+             "the frames above '" + source + "' and '" + target +
+                 "' form a loop or a chain of more than 64 frames"}};
   }
   const auto meeting = std::ranges::find_first_of(up, down);
   if (meeting == up.end()) {
@@ -110,7 +110,7 @@ Transforms::Found Transforms::find(const std::string& target, const std::string&
       found.newest = std::max(found.newest, frame.last_stamp);
       const PoseMatch step = in_parent(frame, stamp);
       if (step.state != known)
-        return PoseMatch{step.state, {}, "of '" + name + "': " + step.reason};
+        return PoseMatch{step.state, {}, "frame '" + name + "': " + step.reason};
       match.pose = chained(step.pose, match.pose);
     }
     return match;

@@ -22,7 +22,8 @@ int main(int argc, char** argv) try {
   for (const flight::Violation& violation : violations) {
     std::puts(flight::describe(violation).c_str());
   }
-  std::printf("%zu of %zu legs keep 2 m\n", route.size() - 1 - violations.size(), route.size() - 1);
+  std::printf("%zu of %zu legs have a clearance of at least 2 m\n",
+              route.size() - 1 - violations.size(), route.size() - 1);
 } catch (const Error& error) {
   std::fprintf(stderr, "certify_route: %s\n", error.what());
   return 2;

@@ -9,12 +9,13 @@ int main() {
   for (const Example::Named& example : Example::all()) {
     try {
       if (example.holds()) continue;
-      std::printf("%s: not what it says\n", example.name);
+      std::printf("%s: unexpected result\n", example.name);
     } catch (const std::exception& error) {
       std::printf("%s: %s\n", example.name, error.what());
     }
     ++failed;
   }
-  std::printf("%zu of %zu examples hold\n", Example::all().size() - failed, Example::all().size());
+  std::printf("%zu of %zu examples passed\n", Example::all().size() - failed,
+              Example::all().size());
   return failed == 0 ? 0 : 1;
 }

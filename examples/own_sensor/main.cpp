@@ -42,7 +42,7 @@ int main() {
           }};
   const survey::SurveyResult result = survey::run_survey(
       planner, geometry::look_at({3.0, 0.0, 1.0}, Vector3d::Zero()), {.max_views = 40}, callbacks);
-  std::printf("%zu views, %zu points, %.1f %% believed covered\n", result.views.size(),
+  std::printf("%zu views, %zu points, %.1f %% estimated coverage\n", result.views.size(),
               planner.cloud().size(), 100.0 * planner.predicted_coverage());
   return result.stop_reason == survey::StopReason::complete ? 0 : 1;
 }

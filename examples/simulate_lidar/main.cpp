@@ -48,7 +48,7 @@ int main() {
       buffer.push_back({point.x(), point.y(), point.z(), returns.intensities[i]});
     }
   }
-  std::printf("%zu returns of %zu shots\n", buffer.size(),
+  std::printf("%zu returns from %zu pulses\n", buffer.size(),
               static_cast<std::size_t>(firings) * config.channels.size());
   return buffer.empty() ? 1 : 0;
 }

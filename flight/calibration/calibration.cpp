@@ -149,11 +149,12 @@ void require_fit(const Calibration& fit) {
                     " W); check the current sensor or calibrate with another log");
   }
   if (fit.energy_error > max_unseen_error) {
-    throw Error(ErrorKind::bad_file,
-                "does not fit a power model: the energy of its parts differs by up to " +
-                    fixed(100.0 * fit.energy_error, 0) +
-                    "% from a fit to the other parts; calibrate with a flight on one battery in "
-                    "steady wind");
+    throw Error(
+        ErrorKind::bad_file,
+        "does not fit a power model: the energy of individual parts of the log differs by up to " +
+            fixed(100.0 * fit.energy_error, 0) +
+            "% from a fit to the other parts; calibrate with a flight on one battery in "
+            "steady wind");
   }
 }
 

@@ -70,10 +70,10 @@ FlightLog read_csv_log(std::string_view text, std::size_t max_samples) {
     log.samples.push_back(parse_sample(fields, columns, number));
     const std::size_t count = log.samples.size();
     if (count > 1 && log.samples[count - 1].time <= log.samples[count - 2].time) {
-      fail(number, "is not later than the previous line");
+      fail(number, "has a time that is not later than that of the previous line");
     }
   }
-  if (log.samples.empty()) fail(number, "is the last line; the log contains no samples");
+  if (log.samples.empty()) fail(number, "is the last line: the log contains no samples");
   return log;
 }
 

@@ -28,7 +28,7 @@ std::string foreign_kind(std::string_view bytes) {
   for (const Kind& kind : kinds) {
     if (geometry::without_mark(bytes).starts_with(kind.beginning)) return kind.what;
   }
-  // Telemetry log of a ground station: a time stamp of 8 bytes before each MAVLink frame.
+  // Telemetry log of a ground station: a timestamp of 8 bytes before each MAVLink frame.
   constexpr std::size_t frame = 8;
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(bytes[i]); };
   const auto is_frame = [&](std::size_t i) { return byte(i) == 0xFE || byte(i) == 0xFD; };

@@ -32,7 +32,7 @@ void MeasuredSpaceConfig::validate() const {
     if (box.isEmpty()) return;
     const double farthest = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff();
     require(is_near(box.min()) && is_near(box.max()), name, farthest,
-            "within 100,000 voxels and 1e7 m of the origin");
+            "within 100,000 voxels and 10,000 km of the origin");
   };
   require_near(region, "measured_space.region");
   for (const AlignedBox3d& box : extra_boxes) require_near(box, "measured_space.beside");
@@ -100,7 +100,7 @@ void MeasuredSpace::insert_points(const geometry::Scan& scan, unsigned threads) 
 void MeasuredSpace::merge_free(const MeasuredSpace& other) {
   const double voxel = impl_->config.voxel;
   require(other.impl_->config.voxel == voxel, "measured_space.voxel", other.impl_->config.voxel,
-          "equal to that of the space it is added to");
+          "equal to the voxel size of the space to which it is added");
   const VoxelBlocks& blocks = other.impl_->blocks;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const Cell cell = unpack_cell(blocks.keys()[i]);

@@ -94,19 +94,22 @@ MeasuredSpaceFile read_measured_space(std::istream& stream, const std::string& n
   FileBlock block{};
   for (std::uint64_t i = 0; i < head.blocks; ++i) {
     if (!read_record(stream, block)) {
-      throw Error(ErrorKind::bad_file, name + ": is truncated after " + std::to_string(i) + " of " +
-                                           std::to_string(head.blocks) +
-                                           " blocks; restore it from a copy or plan again");
+      throw Error(ErrorKind::bad_file,
+                  name + ": is truncated after " + std::to_string(i) + " of " +
+                      std::to_string(head.blocks) +
+                      " blocks; restore it from a copy, or plan the mission again");
     }
     const Vector3d low = unpack_cell(block.key).cast<double>() * 8.0 * head.voxel;
     if (!geometry::is_valid_position(low)) {
-      throw Error(ErrorKind::bad_file, name + ": is damaged: block " + std::to_string(i) +
-                                           " is more than 1e7 m from the origin; plan again");
+      throw Error(ErrorKind::bad_file,
+                  name + ": is damaged: block " + std::to_string(i) +
+                      " is more than 10,000 km from the origin; plan the mission again");
     }
     file.blocks.push_back(block);
   }
   if (stream.peek() != std::istream::traits_type::eof()) {
-    throw Error(ErrorKind::bad_file, name + ": is damaged: data after the last block; plan again");
+    throw Error(ErrorKind::bad_file,
+                name + ": is damaged: data after the last block; plan the mission again");
   }
   return file;
 }

@@ -40,7 +40,7 @@ void validate(const Prism& prism, const std::string& role) {
     fail("has " + std::to_string(corners.size()) + " corners; a footprint requires at least 3");
   }
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    if (!corners[i].allFinite()) fail("has a corner that is not a finite number");
+    if (!corners[i].allFinite()) fail("has a corner with a non-finite coordinate");
     for (std::size_t j = i + 1; j < corners.size(); ++j) {
       if (properly_cross(corners[i], corners[(i + 1) % corners.size()], corners[j],
                          corners[(j + 1) % corners.size()])) {
@@ -51,8 +51,8 @@ void validate(const Prism& prism, const std::string& role) {
   }
   if (!(std::abs(signed_area(corners)) > 0.0)) fail("has no area");
   if (!(prism.floor < prism.ceiling)) {
-    fail("has floor " + std::to_string(prism.floor) + " m, which must be below its ceiling " +
-         std::to_string(prism.ceiling) + " m");
+    fail("has its floor at " + std::to_string(prism.floor) +
+         " m, which must be below its ceiling at " + std::to_string(prism.ceiling) + " m");
   }
 }
 
@@ -65,8 +65,8 @@ void validate(const Obstacles& obstacles) {
   }
   for (std::size_t i = 0; i < obstacles.cloud.points.size(); ++i) {
     if (!obstacles.cloud.points[i].allFinite()) {
-      throw Error(ErrorKind::bad_geometry, "obstacle point " + std::to_string(i) +
-                                               " has a coordinate that is not a finite number");
+      throw Error(ErrorKind::bad_geometry,
+                  "obstacle point " + std::to_string(i) + " has a non-finite coordinate");
     }
   }
   if (!(obstacles.cloud.radius >= 0.0) || !std::isfinite(obstacles.cloud.radius)) {

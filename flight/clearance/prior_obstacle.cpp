@@ -59,13 +59,13 @@ void PriorObstacleConfig::validate() const {
   }
   for (const NamedSurface& surface : surfaces) geometry::validate(surface.mesh);
   if (!std::ranges::all_of(points, [](const auto& point) { return point.allFinite(); })) {
-    reject(ErrorKind::bad_geometry, "has a point that is not finite");
+    reject(ErrorKind::bad_geometry, "has a non-finite point");
   }
   const auto is_sound = [](const AlignedBox3d& box) {
     return box.min().allFinite() && box.max().allFinite() && !box.isEmpty();
   };
   if (!std::ranges::all_of(columns, is_sound)) {
-    reject(ErrorKind::bad_geometry, "has a column that is empty or not finite");
+    reject(ErrorKind::bad_geometry, "has an empty or non-finite column");
   }
 }
 

@@ -57,8 +57,9 @@ RangeImage::RangeImage(const geometry::Scan& scan, const geometry::Camera& camer
   const auto beyond =
       std::ranges::find_if(scan.pixels, [&](std::uint32_t pixel) { return pixel >= count; });
   if (beyond != scan.pixels.end()) {
-    throw Error(ErrorKind::bad_geometry, "a scan has pixel " + std::to_string(*beyond) +
-                                             ", but the camera has " + std::to_string(count));
+    throw Error(ErrorKind::bad_geometry, "a scan refers to pixel " + std::to_string(*beyond) +
+                                             ", but the camera has only " + std::to_string(count) +
+                                             " pixels");
   }
   constexpr std::size_t part_size = 1 << 16;
   const std::size_t parts = (scan.points.size() + part_size - 1) / part_size;
@@ -79,8 +80,8 @@ RangeImage::RangeImage(const geometry::Scan& scan, const SweepRays& rays, double
       origin_spread_(rays.origin_spread) {
   const double ray_spacing = rays.spacing;
   if (!(ray_spacing > 0.0 && ray_spacing < 1.0)) {
-    throw Error(ErrorKind::bad_config,
-                "the ray spacing is " + std::to_string(ray_spacing) + " rad; it must be in (0, 1)");
+    throw Error(ErrorKind::bad_config, "the ray spacing is " + std::to_string(ray_spacing) +
+                                           " rad; it must be between 0 and 1 (exclusive)");
   }
   // Cells as wide as the ray spacing contain at least one ray in each scanned direction.
   width_ = static_cast<int>(std::floor(2.0 * pi / ray_spacing));

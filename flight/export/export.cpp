@@ -67,7 +67,7 @@ std::vector<std::string> make_plan_notes(const FlightPlan& plan) {
   for (const std::string& name : flat_no_fly(plan).left_out) {
     notes.push_back(
         "no-fly volume \"" + name +
-        "\" is omitted: the route passes over or under it, and the format has no heights");
+        "\" is omitted: the route passes over or under it, and the format cannot store heights");
   }
   return notes;
 }

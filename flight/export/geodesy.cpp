@@ -12,9 +12,8 @@ void Site::validate() const {
   const auto require = [](double value, double limit, const char* field) {
     if (std::abs(value) <= limit) return;  // False for NaN.
     throw Error(ErrorKind::bad_config, "the site's " + std::string(field) + " is " +
-                                           std::to_string(value) + "; it must be in [-" +
-                                           std::to_string(limit) + ", " + std::to_string(limit) +
-                                           "]");
+                                           std::to_string(value) + "; it must be from " +
+                                           std::to_string(-limit) + " to " + std::to_string(limit));
   };
   require(origin.latitude_deg, 90.0, "latitude");
   require(origin.longitude_deg, 180.0, "longitude");

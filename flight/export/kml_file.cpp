@@ -233,7 +233,7 @@ class KmlChecker {
       } else if (kind == "Camera") {
         const double tilt = shape.child("tilt").text().as_double(-1.0);
         if (tilt < 0.0 || tilt > 180.0)
-          problems.push_back("\"" + name + "\" has a tilt outside [0, 180]");
+          problems.push_back("\"" + name + "\" has a tilt outside the range 0 to 180 degrees");
       }
     }
   }

@@ -80,7 +80,7 @@ struct LitchiParser {
     const std::vector<std::string> fields = split(text, ',');
     if (fields.size() != litchi_fields) {
       problems.push_back(who + "has " + std::to_string(fields.size()) + " fields; it must have " +
-                         std::to_string(litchi_fields) + ", all 15 actions included");
+                         std::to_string(litchi_fields) + ", including all 15 actions");
       return;
     }
     const std::optional<std::vector<double>> numbers = to_numbers(fields, who, problems);
@@ -88,8 +88,9 @@ struct LitchiParser {
     const std::vector<double>& values = *numbers;
     const auto require = [&](std::size_t field, double low, double high, const char* name) {
       if (values[field] >= low && values[field] <= high) return;
-      problems.push_back(who + "has " + name + " " + fields[field] + "; it must be in [" +
-                         fixed(low, 0) + ", " + fixed(high, 0) + "]");
+      problems.push_back(
+          who + "has " + name + " " + fields[field] + "; it must be " +
+          (low == high ? fixed(low, 0) : "from " + fixed(low, 0) + " to " + fixed(high, 0)));
     };
     require(0, -90, 90, "latitude"), require(1, -180, 180, "longitude");
     require(2, -200, 500, "altitude"), require(3, 0, 359.999999, "heading");
@@ -143,7 +144,7 @@ std::string write_litchi(const FlightPlan& plan) {
   if (plan.waypoints.size() > max_waypoints) {
     throw Error(ErrorKind::bad_config,
                 "\"" + plan.name + "\" has " + std::to_string(plan.waypoints.size()) +
-                    " waypoints; Litchi's limit is 99: divide the plan with split_plan()");
+                    " waypoints; the maximum for Litchi is 99; divide the plan with split_plan()");
   }
   const LocalFrame frame(plan.site.origin);
   const double pad_height = frame.to_geodetic(plan.pad).height;

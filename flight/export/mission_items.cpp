@@ -169,10 +169,12 @@ class ItemChecker {
     const MissionItem& item = items_[i];
     if (item.frame == frame::mission)
       add_problem(i, "has a position, but frame 2 does not allow one");
-    if (!(std::abs(item.params[4]) <= 90.0)) add_problem(i, "has a latitude outside [-90, 90]");
-    if (!(std::abs(item.params[5]) <= 180.0)) add_problem(i, "has a longitude outside [-180, 180]");
+    if (!(std::abs(item.params[4]) <= 90.0))
+      add_problem(i, "has a latitude outside the range -90 to 90 degrees");
+    if (!(std::abs(item.params[5]) <= 180.0))
+      add_problem(i, "has a longitude outside the range -180 to 180 degrees");
     if (!(item.params[6] >= -500.0 && item.params[6] <= 10000.0)) {
-      add_problem(i, "has a height outside [-500, 10000] m");
+      add_problem(i, "has a height outside the range -500 to 10000 m");
     }
     if (item.command == command::waypoint && !(item.params[0] >= 0.0)) {
       add_problem(i, "has a negative hold time");

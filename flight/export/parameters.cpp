@@ -124,7 +124,7 @@ class ParameterWriter {
     set("RTL_OPTIONS", 0);
     set("RTL_LOIT_TIME", 5000);
     both("RTL_SPEED", "RTL_SPEED_MS", plan_.conditions.cruise_speed);
-    comment("Speeds [m/s], accelerations [m/s^2] and jerk of missions");
+    comment("Mission speeds [m/s], accelerations [m/s^2] and jerk [m/s^3]");
     const MissionMode& mode = plan_.vehicle.mode;
     both("WPNAV_SPEED_UP", "WP_SPD_UP", mode.max_ascent);
     both("WPNAV_SPEED_DN", "WP_SPD_DN", mode.max_descent);
@@ -175,7 +175,7 @@ class ParameterWriter {
     real("RTL_LAND_DELAY", 0);
     real("NAV_ACC_RAD", px4_landing_radius);
     real("NAV_MC_ALT_RAD", px4_altitude_radius);
-    comment("Speeds [m/s], accelerations [m/s^2] and jerk");
+    comment("Speeds [m/s], accelerations [m/s^2] and jerk [m/s^3]");
     real("MPC_XY_CRUISE", std::max(3.0, plan_.conditions.cruise_speed));
     const MissionMode& mode = plan_.vehicle.mode;
     real("MPC_Z_V_AUTO_UP", mode.max_ascent);
@@ -283,7 +283,7 @@ Problems return_problems(const std::vector<Parameter>& parameters, AutopilotType
     problems.push_back(std::string(required.name) + " is " + plain(value) + "; it must be " +
                        (required.min == required.max
                             ? plain(required.max)
-                            : "in [" + plain(required.min) + ", " + plain(required.max) + "]"));
+                            : "from " + plain(required.min) + " to " + plain(required.max)));
   }
   const Parameter* metres = find(parameters, "RTL_ALT_M");
   const Parameter* centimetres = find(parameters, "RTL_ALT");

@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 void aim_at(FlightPlan& plan, const ScannerAim& aim) {
   for (Waypoint& waypoint : plan.waypoints) {
     if (!waypoint.is_capture_point) continue;
-    waypoint.yaw -= aim.azimuth;  // Headings are clockwise, azimuths anticlockwise.
+    waypoint.yaw -= aim.azimuth;  // Headings are clockwise, azimuths counter-clockwise.
     waypoint.pitch = aim.pitch;
     waypoint.captures = 0;
   }
@@ -67,19 +67,19 @@ void calibrate(FlightPlan& plan, double energy_left, std::vector<std::string>& n
   std::vector<Waypoint>& waypoints = plan.waypoints;
   const std::string name = commanded_scanner(plan.vehicle.wpml.payload);
   const auto by_hand = [&](const std::string& reason) {
-    notes.push_back(plan.name + ": calibrate the IMU of " + name +
+    notes.push_back(plan.name + ": calibrate the IMU of the " + name +
                     " by hand before and after the route; " + reason);
   };
   const std::size_t last = waypoints.size() - 1;
   const auto begin = turning_point(waypoints[0].position, waypoints[1].position);
   const auto end = turning_point(waypoints[last].position, waypoints[last - 1].position);
   if (!begin || !end) {
-    by_hand("its first or last leg is shorter than 10 m or steeper than 30 degrees");
+    by_hand("the first or last leg is shorter than 10 m or steeper than 30 degrees");
     return;
   }
   const Vector3d out = *begin - waypoints[0].position, back = *end - waypoints[last].position;
   if (calibration_energy(plan, out, back) > energy_left) {
-    by_hand("the battery has no energy left for it above the reserve");
+    by_hand("the energy above the battery reserve is not sufficient for calibration flights");
     return;
   }
   const std::vector<Waypoint> after = calibration(waypoints[last], *end, waypoints[last]);
@@ -103,13 +103,13 @@ FlightPlan with_scanner_commands(FlightPlan plan, Format format, const ScannerAi
   const std::string extension = format_info(format).extension;
   const std::string name = commanded_scanner(plan.vehicle.wpml.payload);
   if (name.empty()) {
-    notes.push_back("start the recording of the scanner before take-off: " + extension +
-                    " files do not command it");
+    notes.push_back("start the scanner recording before take-off: " + extension +
+                    " files cannot control the scanner");
     return plan;
   }
   if (format != Format::kmz || !aim.is_moving) {
     throw Error(ErrorKind::bad_config,
-                extension + " files cannot command the " + name +
+                extension + " files cannot control the " + name +
                     (format == Format::kmz ? " at stops; set sensor.capture: moving"
                                            : "; export kmz for a DJI vehicle"));
   }

@@ -30,7 +30,7 @@ inline constexpr double calibration_length = 30.0,
 /// Orientation of a scanner that is fixed to the vehicle.
 struct ScannerAim {
   double azimuth =
-      0.0;  ///< Azimuth of the optical axis, anticlockwise from the vehicle's nose [rad].
+      0.0;  ///< Azimuth of the optical axis, counter-clockwise from the vehicle's nose [rad].
   double pitch = 0.0;  ///< Pitch of the optical axis, 0 at the horizon [rad].
   bool is_moving =
       true;  ///< True if the scanner measures in flight, false if it measures at stops.

@@ -182,7 +182,8 @@ std::vector<std::vector<double>> parse_rows(const std::vector<std::string>& line
                          std::to_string(count));
       return rows;
     }
-    if (row->front() <= last_time) problems.push_back(who + "is not later than the previous line");
+    if (row->front() <= last_time)
+      problems.push_back(who + "has a time that is not later than that of the previous line");
     last_time = row->front();
     rows.push_back(*row);
   }
@@ -194,7 +195,7 @@ std::vector<std::vector<double>> csv_rows(const std::string& text, Frame& frame,
                                           Problems& problems) {
   const std::vector<std::string> lines = split_lines(text);
   if (lines.size() < 2 || (lines[0] != enu_comment && lines[0] != ned_comment)) {
-    problems.emplace_back("line 1 must name the frame, ENU or NED");
+    problems.emplace_back("line 1 must specify the frame, ENU or NED");
     return {};
   }
   frame = lines[0] == enu_comment ? Frame::enu : Frame::ned;

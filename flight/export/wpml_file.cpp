@@ -55,7 +55,7 @@ class WpmlChecker {
     if (!value || *value < low || *value > high) {
       add_problem((text.empty() ? "has no wpml:" + std::string(name)
                                 : "has wpml:" + std::string(name) + " " + text) +
-                  "; it must be a number in [" + fixed(low, 1) + ", " + fixed(high, 1) + "]");
+                  "; it must be a number from " + fixed(low, 1) + " to " + fixed(high, 1));
       return 0.0;
     }
     return *value;
@@ -235,7 +235,7 @@ class WpmlChecker {
     if (kinds.empty()) return;
     for (const std::string& kind : split(kinds, ',')) {
       if (!std::set<std::string>{"visable", "wide", "zoom", "ir", "narrow_band"}.contains(kind)) {
-        add_problem("has wpml:payloadLensIndex \"" + kinds + "\", which is not one of its values");
+        add_problem("has wpml:payloadLensIndex \"" + kinds + "\", which is not a valid value");
       }
     }
   }

@@ -35,7 +35,7 @@ constexpr std::array<CommandRow, 36> table{{
     {177, "DO_JUMP", Meaning::jump, both, ""},
     {178, "DO_CHANGE_SPEED", Meaning::set_speed, both, ""},
     {179, "DO_SET_HOME", Meaning::rejected, both,
-     "it changes the reference of all heights above home"},
+     "it changes the reference for all heights above home"},
     {185, "DO_FLIGHTTERMINATION", Meaning::rejected, both, "it stops the motors"},
     {189, "DO_LAND_START", Meaning::no_motion, both, ""},
     {195, "DO_SET_ROI_LOCATION", Meaning::rejected, both,

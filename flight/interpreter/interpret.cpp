@@ -52,7 +52,7 @@ InterpretedRoute interpret_litchi(const RouteFile& file, const FlightFacts& fact
                   " m, which cannot be verified; it must be " + "at most 0.3 m");
     }
     if (!(point.speed > 0.0 && point.speed <= facts.cruise_speed + 1e-3)) {
-      add_problem("has speed " + fixed(point.speed, 2) +
+      add_problem("has a speed of " + fixed(point.speed, 2) +
                   " m/s; it must be above 0 and at most the " + "mission's cruise speed, " +
                   fixed(facts.cruise_speed, 2) + " m/s");
     }

@@ -73,7 +73,7 @@ class MissionFlight {
     if (row == nullptr) {
       return add_problem(item, "is an unsupported command; remove it");
     }
-    if (has_landed_) return add_problem(item, "comes after the landing");
+    if (has_landed_) return add_problem(item, "occurs after the landing");
     if (!item.auto_continue)
       add_problem(item, "does not continue to the next item (autocontinue is 0)");
     if (!is_supported(*row)) {
@@ -232,8 +232,9 @@ class MissionFlight {
     route_.segments.back().speed = speed_;
     if (photo_spacing_ == 0.0) return;
     if (departure_.length() > 0.0) {
-      return add_problem(item,
-                         "is flown to with a camera trigger from a position that is not exact");
+      return add_problem(
+          item,
+          "is flown to with an active camera trigger, but the exact start of its leg is unknown");
     }
     append_passes(route_, photo_spacing_,
                   autopilot_ == AutopilotType::ardupilot ? next_yaw_deg_ : item.params[3],
@@ -302,7 +303,7 @@ class MissionFlight {
   void turn(const MissionItem& item) {
     if (item.params[3] != 0.0) return add_problem(item, "sets a relative yaw instead of a heading");
     if (!(item.params[0] >= 0.0 && item.params[0] <= 360.0)) {
-      return add_problem(item, "turns to a heading outside [0, 360] degrees");
+      return add_problem(item, "turns to a heading outside the range 0 to 360 degrees");
     }
     next_yaw_deg_ = item.params[0];
   }
@@ -371,7 +372,7 @@ class MissionFlight {
                                    " m; it must be 0 or at least 0.1 m");
     }
     if (item.params[2] != 0.0 && spacing > 0.0) {
-      return add_problem(item, "captures an image at once; set parameter 3 to 0");
+      return add_problem(item, "captures an image immediately; set parameter 3 to 0");
     }
     photo_spacing_ = spacing;
   }

@@ -119,7 +119,7 @@ std::string compare(const Photograph& photograph, const Photograph* previous,
   const double time = min_time(*previous, photograph, facts);
   if (time >= facts.photo->min_interval - interval_tolerance) return "";
   return "captures an image " + fixed(time, 2) +
-         " s after the one before; the camera's minimum interval is " +
+         " s after the previous one; the camera's minimum interval is " +
          fixed(facts.photo->min_interval, 2) + " s";
 }
 

@@ -51,7 +51,7 @@ constexpr std::array wayline_waypoint_rules{
     OnlyValue{"useStraightLine", "1", "leaves the straight legs"}};
 
 constexpr std::array group_rules{
-    OnlyValue{"actionGroupMode", "sequence", "is triggered at any time"}};
+    OnlyValue{"actionGroupMode", "sequence", "does not execute its actions in sequence"}};
 
 constexpr std::array gimbal_rules{
     OnlyValue{"gimbalRotateMode", "absoluteAngle", "sets a relative instead of an absolute pitch"},
@@ -260,8 +260,8 @@ class WpmlFlight {
       const pugi::xml_node system = folder_.child("wpml:waylineCoordinateSysParam");
       if (child_text(folder_, "executeHeightMode") == mode ||
           child_text(system, "heightMode") == mode) {
-        add_problem(std::string("has heights with reference ") + mode +
-                    ", whose ground is unknown");
+        add_problem(std::string("has heights relative to the ground (") + mode +
+                    "), which is unknown");
       }
     }
     if (!facts_.vehicle || facts_.vehicle->autopilot != AutopilotType::dji) return;
@@ -348,7 +348,7 @@ class WpmlFlight {
         }
         if (is_run && function != "takePhoto") {
           add_problem("has wpml:actionActuatorFunc " + function +
-                          " at even distances; it must be takePhoto",
+                          " at equal distances; it must be takePhoto",
                       who);
         }
         if (function == "rotateYaw") yaw_deg = child_number(param, "aircraftHeading");
@@ -402,7 +402,7 @@ class WpmlFlight {
     const auto require = [&](const char* end, std::size_t expected) {
       if (child_text(group, end) == std::to_string(expected)) return;
       add_problem("has wpml:" + std::string(end) + " " + child_text(group, end) +
-                      ": its actions run at other waypoints",
+                      "; its actions would run at other waypoints",
                   waypoint(index));
     };
     require("actionGroupStartIndex", index);
@@ -427,8 +427,8 @@ class WpmlFlight {
 void check_pad(const Vector3d& stated, const Vector3d& pad, Problems& problems) {
   const double level = (stated - pad).head<2>().norm(), up = stated.z() - pad.z();
   if (level <= pad_tolerance && std::abs(up) <= pad_height_tolerance) return;
-  problems.push_back("template.kml has wpml:takeOffRefPoint " + fixed(level, 1) + " m from and " +
-                     fixed(up, 1) + " m above the take-off point");
+  problems.push_back("in template.kml, wpml:takeOffRefPoint is " + fixed(level, 1) +
+                     " m from and " + fixed(up, 1) + " m above the take-off point");
 }
 
 }  // namespace

@@ -101,7 +101,7 @@ void VehicleState::hear_position(const GlobalPosition& message, double now) {
       std::abs(static_cast<double>(message.longitude)) > max_longitude) {
     return;
   }
-  // A position with an unchanged time stamp is ignored.
+  // A position with an unchanged timestamp is ignored.
   if (position_ && message.time_boot_ms == position_->boot_ms) return;
   constexpr double degrees = 1e-7, metres = 1e-3, metres_a_second = 1e-2;
   position_ = {now,

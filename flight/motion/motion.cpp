@@ -47,21 +47,24 @@ void Conditions::validate(const Vehicle& vehicle) const {
   }
   if (!(cruise_speed > 0.0) || !(cruise_speed <= vehicle.max_speed)) {
     fail("the cruise speed is " + std::to_string(cruise_speed) + " m/s; for vehicle \"" +
-         vehicle.name + "\" it must be in (0, " + std::to_string(vehicle.max_speed) + "]");
+         vehicle.name + "\" it must be above 0 and at most " + std::to_string(vehicle.max_speed) +
+         " m/s");
   }
   if (!(reserve >= 0.0 && reserve < 1.0)) {
-    fail("the battery reserve is " + std::to_string(reserve) + "; it must be in [0, 1)");
+    fail("the battery reserve is " + std::to_string(reserve) +
+         "; it must be at least 0 and below 1");
   }
   if (!(longest_flight >= 1.0)) {
     fail("the longest flight is " + std::to_string(longest_flight) +
          " times the estimated time; it must be at least 1");
   }
   if (!(air_density > 0.3 && air_density < 2.0)) {
-    fail("the air density is " + std::to_string(air_density) + " kg/m^3; it must be in (0.3, 2)");
+    fail("the air density is " + std::to_string(air_density) +
+         " kg/m^3; it must be between 0.3 and 2 (exclusive)");
   }
   if (!(temperature_c > -40.0 && temperature_c < 60.0)) {
     fail("the temperature is " + std::to_string(temperature_c) +
-         " degrees Celsius; it must be in (-40, 60)");
+         " degrees Celsius; it must be between -40 and 60 (exclusive)");
   }
 }
 
@@ -143,7 +146,7 @@ Motion::Motion(const Vehicle& vehicle, const Conditions& conditions)
                 "vehicle \"" + vehicle.name + "\": an endurance of " +
                     std::to_string(vehicle.endurance_min) + " min requires " +
                     std::to_string(data_sheet_power(vehicle)) +
-                    " W, which is less than hovering with its mass requires");
+                    " W, which is less than the power for hovering with its mass");
   }
   const double density_ratio = conditions.air_density / sea_level_density;
   induced_speed_ = std::sqrt(thrust / (2.0 * conditions.air_density * disc_area(vehicle)));

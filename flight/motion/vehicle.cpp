@@ -24,7 +24,8 @@ void Vehicle::validate() const {
   require(avionics_power >= 0.0, "avionics_power", avionics_power, "zero or more");
   require(drag_area >= 0.0, "drag_area", drag_area, "zero or more");
   require(max_wind >= 0.0, "max_wind", max_wind, "zero or more");
-  require(energy_error >= 0.0 && energy_error < 1.0, "energy_error", energy_error, "in [0, 1)");
+  require(energy_error >= 0.0 && energy_error < 1.0, "energy_error", energy_error,
+          "at least 0 and below 1");
   require(gimbal_min <= gimbal_max, "gimbal_min", gimbal_min, "at most gimbal_max");
   mode.validate(name);
 }

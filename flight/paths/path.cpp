@@ -249,9 +249,9 @@ void PathOptions::validate() const {
   require(finest_cell >= 0.0 && std::isfinite(finest_cell),
           "path.finest_cell is " + std::to_string(finest_cell) + " m; it must be zero or more");
   require(max_expansions > 0, "path.max_expansions is 0; it must be at least 1");
-  require(
-      worthwhile_saving >= 0.0 && worthwhile_saving < 1.0,
-      "path.worthwhile_saving is " + std::to_string(worthwhile_saving) + "; it must be in [0, 1)");
+  require(worthwhile_saving >= 0.0 && worthwhile_saving < 1.0,
+          "path.worthwhile_saving is " + std::to_string(worthwhile_saving) +
+              "; it must be at least 0 and below 1");
 }
 
 double length(const std::vector<Vector3d>& points) {

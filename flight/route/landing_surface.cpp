@@ -35,7 +35,7 @@ const char* to_string(GroundSource source) {
     case GroundSource::declared:
       return "as declared";
     case GroundSource::terrain:
-      return "by the terrain";
+      return "in the terrain data";
     case GroundSource::scene:
       return "in the scene";
   }
@@ -90,18 +90,19 @@ std::string unfit_reason(const LandingSurface& ground, const PadLimits& limits) 
   const std::string by = to_string(ground.source);
   if (ground.slope > limits.max_slope) {
     return "has a slope of " + degrees_text(ground.slope) + " " + by + "; the maximum is " +
-           degrees_text(limits.max_slope) + " (flight.max_pad_slope_deg); move it";
+           degrees_text(limits.max_slope) + " (flight.max_pad_slope_deg); move the point";
   }
   if (ground.unevenness > pad_roughness) {
     return "has an unevenness of " + length_text(ground.unevenness) + " " + by +
-           "; the maximum is " + length_text(pad_roughness) + "; move it";
+           "; the maximum is " + length_text(pad_roughness) + "; move the point";
   }
   const double max = pad_roughness + limits.height_error;
   if (std::abs(ground.rise) > max) {
     return "has ground " + length_text(std::abs(ground.rise)) +
            (ground.rise > 0.0 ? " above it " : " below it ") + by + "; the maximum is " +
            length_text(max) +
-           ", because the altitude reference is the vehicle on the ground; correct its z";
+           ", because the altitude reference is the vehicle on the ground; correct the z of the "
+           "point";
   }
   return "";
 }

@@ -18,7 +18,7 @@ void check_climb(const FreeSpace& space, const std::string& position, const Segm
   throw Error(ErrorKind::bad_config,
               "the climb from " + position + " comes within " + length_text(closest.distance) +
                   " of " + space.name(closest) + " at " + position_text(closest.on_leg) +
-                  "; the clearance is " + length_text(clearance) + "; move it");
+                  "; the clearance is " + length_text(clearance) + "; move the point");
 }
 
 }  // namespace

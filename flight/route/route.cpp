@@ -187,9 +187,10 @@ Route plan_route(std::vector<CapturePoint> capture_points, const Vehicle& vehicl
     if (!capture_point.view.position.allFinite() || !capture_point.view.direction.allFinite() ||
         !(capture_point.hold >= 0.0) || !(capture_point.hold_after >= 0.0) ||
         capture_point.captures < 0) {
-      throw Error(ErrorKind::bad_geometry, "view " + std::to_string(capture_point.view_index) +
-                                               " has a pose that is not finite, a negative hold "
-                                               "time or a negative number of photos");
+      throw Error(
+          ErrorKind::bad_geometry,
+          "view " + std::to_string(capture_point.view_index) +
+              " has a non-finite pose, a negative hold time or a negative number of photos");
     }
   }
   return RoutePlanner(vehicle, space, options).plan(std::move(capture_points), pad_space);

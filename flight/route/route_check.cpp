@@ -14,7 +14,7 @@ std::vector<LegCertificate> verify_route(const std::vector<Vector3d>& points,
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (points[i].allFinite()) continue;
     throw Error(ErrorKind::bad_geometry,
-                "point " + std::to_string(i) + " of the route is not a finite position");
+                "point " + std::to_string(i) + " of the route has a non-finite position");
   }
   std::vector<LegCertificate> certificates;
   const std::size_t legs =

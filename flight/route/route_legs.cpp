@@ -18,7 +18,7 @@ std::vector<Vector3d> reversed(const std::vector<Vector3d>& approach_path) {
 }
 
 constexpr const char* out_of_range_remedy =
-    "move flight.takeoff nearer to it or lower flight.reserve";
+    "move flight.takeoff closer to the view or lower flight.reserve";
 
 /// Returns true if the survey flew from `from` to the waypoint.
 bool is_executed(const Vector3d& from, const CapturePoint& to) {
@@ -51,7 +51,7 @@ std::vector<CapturePoint> RouteLegs::allowed(std::vector<CapturePoint> capture_p
       reject(capture_point, reason,
              can_aim(motion_.vehicle(), capture_point.view)
                  ? "lower flight.clearance"
-                 : "set limits.max_pitch_deg and limits.min_pitch_deg to what the gimbal reaches, "
+                 : "set limits.max_pitch_deg and limits.min_pitch_deg to the range of the gimbal, "
                    "and plan the mission again");
     }
     return !reason.empty();

@@ -60,7 +60,7 @@ void RouteOptions::validate() const {
   clearance.validate();
   path.validate();
   if (!takeoff.allFinite()) {
-    throw Error(ErrorKind::bad_config, "the take-off point is not a finite position");
+    throw Error(ErrorKind::bad_config, "the take-off point has a non-finite position");
   }
   if (!(takeoff_climb >= 0.0) || !std::isfinite(takeoff_climb)) {
     throw Error(ErrorKind::bad_config, "the climb after take-off is " +

@@ -34,14 +34,14 @@ constexpr const char* over_remedy = "raise site.max_height or move flight.takeof
 std::string remedy_for(const ReturnVerification& failed) {
   switch (failed.segment.part) {
     case ReturnPart::level_as_it_is:
-      return "move flight.takeoff more than 54 m away from it (over ground): from there the "
-             "vehicle climbs before it returns, and needs no level return";
+      return "move flight.takeoff more than 54 m (horizontal distance) away from the view, so that "
+             "the vehicle climbs before it returns and no level return is required";
     case ReturnPart::climb:
       return failed.closest.kind == ObstacleKind::unknown_space
-                 ? "survey the space above it as well (raise site.max_height, lower "
-                   "planner.min_gain) or lower the top of flight.unknown_box to what can stand "
-                   "there"
-                 : "raise planner.view_distance, so that views keep away from overhangs";
+                 ? "survey the space above the view (raise site.max_height, lower "
+                   "planner.min_gain), or lower the top of flight.unknown_box to the maximum "
+                   "obstacle height"
+                 : "raise planner.view_distance so that views keep away from overhangs";
     case ReturnPart::level:
       return over_remedy;
     case ReturnPart::descent:
@@ -63,7 +63,7 @@ NoReturn ReturnPaths::no_return_reason(const Vector3d& position) const {
     const Segment leg{over[i - 1], over[i]};
     const LegVerification verification = verify(space_, leg, clearance_, clearance_);
     if (!verification.is_verified) {
-      return {"the return vertically up and horizontally to the take-off point comes within " +
+      return {"the return (vertical climb, then level flight to the take-off point) comes within " +
                   length_text(verification.closest.distance) + " of " +
                   space_.name(verification.closest) + " at " +
                   position_text(verification.closest.on_leg),

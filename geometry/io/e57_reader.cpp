@@ -151,8 +151,7 @@ void E57Reader::add_points(std::size_t count, E57Points& points) {
     const Eigen::Vector3d position =
         scan.file_from_scan *
         (field_indices_.is_spherical ? spherical_to_cartesian(stored) : stored);
-    if (!position.allFinite())
-      e57::throw_bad_file("has a point whose coordinates are not finite numbers");
+    if (!position.allFinite()) e57::throw_bad_file("has a point with non-finite coordinates");
     points.positions.push_back(position);
     if (has_normals_) {
       points.normals.push_back(

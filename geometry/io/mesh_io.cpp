@@ -39,7 +39,7 @@ PolygonSoup parse(const fs::path& path) {
   if (format == ".drc") {
     const std::string bytes = read_file(path, largest_whole_file, largest_unpacked_mesh);
     const Mesh mesh = decode_draco(path.string(), bytes);
-    if (mesh.triangles.size() > max_unpacked) fail(path, "contains more than 1e7 triangles");
+    if (mesh.triangles.size() > max_unpacked) fail(path, "contains more than 10 million triangles");
     PolygonSoup soup{mesh.vertices, {}};  // checked like the polygons of other formats
     for (const auto& triangle : mesh.triangles) {
       soup.corners.insert(soup.corners.end(), triangle.begin(), triangle.end());

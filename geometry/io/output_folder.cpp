@@ -131,7 +131,7 @@ int locked(const fs::path& folder) {
 OutputFolder::OutputFolder(fs::path folder) : folder_(std::move(folder)) {
   std::error_code failure;
   if (fs::exists(folder_, failure) && !fs::is_directory(folder_, failure)) {
-    fail_at(folder_, "is a file; use another folder for the results");
+    fail_at(folder_, "is a file, not a folder; specify a folder for the results");
   }
   is_new_ = fs::create_directories(folder_, failure);
   if (failure) {

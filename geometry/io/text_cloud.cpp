@@ -244,7 +244,7 @@ class TextCloud {
     constexpr std::size_t three_points = 9;
     if (points_ == 1 && columns_of_last_ > three_points && columns_of_last_ % 3 == 0) {
       fail_cloud(path_, "has " + std::to_string(columns_of_last_) +
-                            " numbers in its only line; write one point per line");
+                            " numbers on a single line; write one point per line");
     }
   }
 

@@ -56,7 +56,7 @@ DepthImage read_depth_png(const std::filesystem::path& path) {
   if (!is_deep || static_cast<double>(png.width) * png.height > max_pixels) {
     png_image_free(&png);
     fail(path, "is not a depth image",
-         is_deep ? "it has more than 2.5e7 pixels" : "it must have 16 bits per pixel");
+         is_deep ? "it has more than 25 million pixels" : "it must have 16 bits per pixel");
   }
   png.format = PNG_FORMAT_LINEAR_Y;
   DepthImage image{static_cast<int>(png.width), static_cast<int>(png.height), {}};

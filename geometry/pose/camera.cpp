@@ -17,7 +17,7 @@ void CameraConfig::validate() const {
   require(width > 0 && width <= max_pixels, "width", width, "between 1 and 32768 pixels");
   require(height > 0 && height <= max_pixels, "height", height, "between 1 and 32768 pixels");
   require(static_cast<double>(width) * height <= 1e8, "width", width,
-          "such that width times height is at most 1e8 pixels");
+          "such that width times height is at most 100 million pixels");
   require(is_angle_of_view(horizontal_fov), "horizontal_fov", horizontal_fov,
           "between 0 and pi radians (exclusive)");
   require(is_angle_of_view(vertical_fov), "vertical_fov", vertical_fov,

@@ -52,7 +52,7 @@ void require_square_pixels(const PhotoCameraConfig& config) {
                   std::to_string(config.width) + " x " + std::to_string(config.height) +
                   " px) must have the same aspect ratio within 2%: the pixel pitches are " +
                   text(1e6 * across, 4) + " and " + text(1e6 * down, 4) +
-                  " um; set the size of the crop that the image uses");
+                  " um; set the sensor size to the size of the crop that the image uses");
 }
 
 /// Throws Error if the field of view contradicts the focal length. Without a field of view, throws

@@ -52,8 +52,8 @@ void validate(const Mesh& mesh, unsigned threads) {
   const std::size_t vertex =
       first_bad(vertices, threads, [&](std::size_t v) { return !mesh.vertices[v].allFinite(); });
   if (vertex < vertices) {
-    throw Error(ErrorKind::bad_geometry, "vertex " + std::to_string(vertex) +
-                                             " has a coordinate that is not a finite number");
+    throw Error(ErrorKind::bad_geometry,
+                "vertex " + std::to_string(vertex) + " has a non-finite coordinate");
   }
   const std::size_t triangle = first_bad(triangles, threads, [&](std::size_t t) {
     return std::ranges::any_of(mesh.triangles[t], [&](std::uint32_t v) { return v >= vertices; });

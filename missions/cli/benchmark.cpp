@@ -168,13 +168,13 @@ std::vector<batch::BenchmarkCell> results_of_others(const BenchmarkOptions& opti
       };
       if (std::ranges::find(entries, cell.mission, &Entry::title) == entries.end()) {
         fail("mission '" + cell.mission + "' is not part of this benchmark; expected " +
-             entries.front().title + (entries.size() > 1 ? " or another mission given" : ""));
+             entries.front().title + (entries.size() > 1 ? " or another of its missions" : ""));
       }
       const auto is_same = [&](const batch::BenchmarkCell& other) {
         return other.mission == cell.mission && other.planner == cell.planner;
       };
       if (batch::find_method(cell.planner) != nullptr || std::ranges::any_of(all, is_same)) {
-        fail("planner '" + cell.planner + "' is named twice; give it a name of its own");
+        fail("planner '" + cell.planner + "' is listed twice; rename it in one of the files");
       }
       all.push_back(std::move(cell));
     }

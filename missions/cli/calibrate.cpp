@@ -26,8 +26,9 @@ std::string vehicle_text(const Calibration& calibration, const std::string& pres
   const flight::MissionMode& mode = vehicle.mode;
   constexpr double degree = geometry::radians_per_degree;
   return fmt::format(
-      "# From {}: {} windows of steady flight, {:.0f} s, scatter {:.1f} W; energy of parts that\n# "
-      "were not used in the fit: within {:.1f}%.\nname: {}\nlike: {}\nmass: {}\nrotor_diameter: "
+      "# Fitted to {}: {} windows of steady flight, {:.0f} s, scatter {:.1f} W. Energy of the "
+      "parts of\n# the log that were not used in the fit: predicted to within {:.1f}%.\nname: "
+      "{}\nlike: {}\nmass: {}\nrotor_diameter: "
       "{}\nbattery_wh: {}\nendurance_min: {}\navionics_power: {}\ndrag_area: {}\nenergy_error: "
       "{}\nmode:\n  max_ascent: {}\n  max_descent: {}\n  acceleration: {}\n  "
       "vertical_acceleration: {}\n  jerk: {}\n  jerk_rise: {}\n  settle_time: {}\n  yaw_rate_deg: "
@@ -47,8 +48,9 @@ std::string report(const Calibration& calibration, const flight::Vehicle& before
   const flight::Vehicle& vehicle = calibration.vehicle;
   std::string text = fmt::format(
       "  power     hover {:.1f} W, {:.1f} min until the battery is empty (preset {:.1f}); avionics "
-      "{:.1f} W, drag area {:.4f} m^2\n  fit       {} windows, {:.0f} s, scatter {:.1f} W; parts "
-      "not used in the fit within {:.1f}%: energy_error {:.2f}\n  wind      {:.1f} m/s during the "
+      "{:.1f} W, drag area {:.4f} m^2\n  fit       {} windows, {:.0f} s, scatter {:.1f} W; energy "
+      "of unused parts predicted to within {:.1f}%; energy_error {:.2f}\n  wind      {:.1f} m/s "
+      "during the "
       "flight\n",
       calibration.hover_power, vehicle.endurance_min, before.endurance_min, vehicle.avionics_power,
       vehicle.drag_area, calibration.windows, calibration.flight_time, calibration.scatter,
@@ -62,8 +64,8 @@ std::string report(const Calibration& calibration, const flight::Vehicle& before
                         calibration.legs);
   } else if (calibration.legs_without_time > calibration.legs) {
     text += fmt::format(
-        "; settle_time unchanged: {} legs have no durations (the log lists the "
-        "mission, not its execution)\n",
+        "; settle_time unchanged: the durations of {} legs are unknown (the log contains the "
+        "mission, but not its execution)\n",
         calibration.legs_without_time);
   } else {
     text += fmt::format("; {} legs with a stop are too few to estimate the settling time\n",
@@ -79,7 +81,7 @@ void require_readable(const std::string& text, const std::string& name) {
     config::read_vehicle(text, name);
   } catch (const Error& error) {
     throw Error(ErrorKind::bad_file,
-                std::string("the fitted values are not a valid vehicle: ") + error.what());
+                std::string("the fitted values do not describe a valid vehicle: ") + error.what());
   }
 }
 

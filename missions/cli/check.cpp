@@ -103,8 +103,8 @@ int check_timetable(const CheckOptions& options, const flight::FlightOptions& fl
     console.out << file << ": " << problem << "\n";
   console.out << file << ": "
               << fmt::format(
-                     "{}, {} sorties of {} vehicles in {:.0f} s, separation at least {:.2f} m at "
-                     "all times, each up to {} s early or late; required {} m\n",
+                     "{}, {} sorties of {} vehicles in {:.0f} s, minimum separation {:.2f} m with "
+                     "each vehicle up to {} s early or late, required {} m\n",
                      verification.problems.empty() ? "verified" : "not verified",
                      verification.sorties, flight.fleet.vehicles.size(), verification.makespan,
                      verification.distance, support::short_text(rule.tolerance),
@@ -193,8 +193,8 @@ std::string expectation_text(const simulation::Expectation& expected) {
                                 ? std::to_string(expected.max_views)
                                 : fmt::format("{} to {}", expected.min_views, expected.max_views);
   return fmt::format(
-      "  expected  {} views (oracle: {}), {} minutes of flight, {} MB\n  time      {} s on this "
-      "machine for plan, estimated from loading and the first view\n",
+      "  expected  {} views (oracle: {}), {} minutes of flight, {} MB\n  time      {} s for skycap "
+      "plan on this machine, estimated from the loading time and the first view\n",
       views, expected.known_views, range_text(expected.min_minutes, expected.max_minutes),
       rough_text(1e-6 * expected.memory), range_text(expected.min_time, expected.max_time));
 }

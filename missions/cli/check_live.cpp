@@ -70,7 +70,7 @@ class LiveCheck {
     }
     if (planner_.limits.min_standoff >= distance) {
       problems_.push_back(fmt::format(
-          "{} ({:.4g} m) must be smaller than the view distance ({:.4g} m); lower it or raise "
+          "{0} ({1:.4g} m) must be smaller than the view distance ({2:.4g} m); lower {0} or raise "
           "planner.view_distance",
           setup_.flight().has_vehicle() ? "flight.clearance" : "limits.stand_off",
           planner_.limits.min_standoff, distance));
@@ -82,12 +82,12 @@ class LiveCheck {
     if (limits.geofence.empty()) {
       warnings_.emplace_back(
           "site.geofence is missing: views behind walls can be proposed; set it to the area in "
-          "which the sensor can be");
+          "which the sensor can move");
     }
     if (limits.min_standoff == 0.0) {
       warnings_.emplace_back(
           "limits.stand_off is 0: views close to surfaces and in unknown space can be proposed; "
-          "set the minimum distance");
+          "set it to the minimum distance from surfaces");
     }
   }
 
@@ -95,8 +95,8 @@ class LiveCheck {
     if (!first_) return;
     if (!planner_.limits.allow(*first_)) {
       problems_.emplace_back(
-          "the first view violates the limits of height, pitch, geofence or no-fly volumes; "
-          "correct start.position, its direction or the limits");
+          "the first view violates a height or pitch limit, the geofence or a no-fly volume; "
+          "correct start.position, the start direction or the limit");
     } else if (setup_.flight().has_vehicle()) {
       try {  // The climb and the path to the first view are verified before any scan.
         const session::SurveyFlight flight(setup_.flight(), *first_, setup_.run.threads);
@@ -140,7 +140,7 @@ class LiveCheck {
   }
 
   std::string first_view_text() const {
-    if (!first_) return "  first     any view that sees the scene\n";
+    if (!first_) return "  first     any view from which the scene is visible\n";
     const double degree = geometry::radians_per_degree;
     return fmt::format(
         "  first     view at ({:.4g}, {:.4g}, {:.4g}), heading {:.4g} degrees, pitch {:.4g} "
@@ -162,8 +162,8 @@ std::string range_warning(const config::MissionSetup& setup, double view_distanc
   const std::optional<config::RangeInterval>& useful = sensor.useful_range;
   if (!useful || (view_distance >= useful->min && view_distance <= useful->max)) return "";
   return fmt::format(
-      "the view distance ({:.4g} m) should be in the useful range of the camera {} ({:g} to {:g} "
-      "m), where it is accurate; change planner.view_distance, or set sensor.max_range to the "
+      "the view distance ({:.4g} m) should be in the range in which the camera {} is accurate "
+      "({:g} to {:g} m); change planner.view_distance, or set sensor.max_range to the "
       "range "
       "of your sensor",
       view_distance, sensor.preset, useful->min, useful->max);

@@ -64,9 +64,9 @@ void add_plan(CLI::App& app, const Console& console, Action& action) {
                       "Photo missions: CSV file of surveyed ground control points, "
                       "name,x,y,z or name,latitude,longitude,height");
   command->add_flag("--use-prior-as-truth", keys->uses_prior_as_truth,
-                    "Simulate with the target prior data as ground truth");
+                    "Simulate with the target's prior data as ground truth");
   command->add_flag("--verbose", options->is_verbose,
-                    "Print the planning time per view and part, and lower bounds");
+                    "Print planning times per view and the optimality gap of the tour");
   add_set_option(*command, *keys);
   run_with_keys(*command, options, keys, plan, console, action);
 }
@@ -105,7 +105,7 @@ void add_benchmark(CLI::App& app, const Console& console, Action& action) {
       ->check(CLI::Range(1, 100'000));
   command->add_option(
       "--out", options->out,
-      "Folder for the results (default: results/benchmark). Finished runs are not repeated");
+      "Folder for the results (default: results/benchmark). Completed runs are not repeated");
   command
       ->add_option("--threads", options->threads, "Number of parallel surveys (0: all processors)")
       ->check(CLI::Range(0, 1024));
@@ -135,7 +135,7 @@ void add_scan(CLI::App& app, const Console& console, Action& action) {
           "Point formats, one or more of " + scan::cloud_format_names() + " (default: las)")
       ->delimiter(',');
   command->add_flag("--with-truth", options->with_truth,
-                    "Also write the points at their true positions");
+                    "Also write the points at their true positions (ground truth)");
   CLI::Option* const resumes = command->add_flag(
       "--resume", options->resumes, "Resume an interrupted scan in the results folder");
   command
@@ -255,7 +255,7 @@ void add_evaluate(CLI::App& app, const Console& console, Action& action) {
   CLI::App* command =
       app.add_subcommand("evaluate", "Compare a point cloud or mesh with a reference model");
   const auto options = std::make_shared<EvaluateOptions>();
-  CLI::App* what = command->add_option_group("what is evaluated");
+  CLI::App* what = command->add_option_group("evaluated data");
   what->add_option("--cloud", options->cloud, "Point cloud: .ply, .pcd, .las, .laz, .e57 or .xyz");
   what->add_option("--mesh", options->mesh,
                    "Mesh instead of a cloud, for example from skycap reconstruct");
@@ -280,7 +280,7 @@ void add_evaluate(CLI::App& app, const Console& console, Action& action) {
   command->add_flag("--json", options->is_json, "Print the result as JSON");
   command->add_flag("--quiet", options->is_quiet, "Print errors only");
   command->add_option("--density", options->density,
-                      "Folder for the density of all points: raster (GeoTIFF), histograms, shares");
+                      "Folder for the point density: raster (GeoTIFF), histograms and fractions");
   command
       ->add_option(
           "--density-cell", options->density_cell,
@@ -303,7 +303,7 @@ void add_reconstruct(CLI::App& app, const Console& console, Action& action) {
                    "Point cloud (.ply, .pcd, .las, .laz, .e57, .xyz), with or without normals")
       ->required();
   command->add_option("--out", options->out, "PLY, OBJ, STL or OFF file (default: CLOUD_mesh.ply)");
-  command->add_option("--spacing", options->spacing, "Voxel size of downsampling in metres")
+  command->add_option("--spacing", options->spacing, "Voxel size for downsampling in metres")
       ->check(number_between(0.0, 1e6));
   command
       ->add_option("--depth", options->depth,

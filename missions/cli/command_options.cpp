@@ -45,8 +45,8 @@ std::vector<CLI::Option*> add_task_options(CLI::App& command, TaskOptions& optio
       ->check(CLI::Range(1, 1'000'000));
   std::vector<CLI::Option*> all{
       command.add_option("--index", options.index,
-                         "Run one task: its 0-based index, or slurm, mpi, kubernetes, parallel or "
-                         "auto to read it from the scheduler's environment"),
+                         "Run one task: 0-based index of the task, or slurm, mpi, kubernetes, "
+                         "parallel or auto to read the index from the scheduler's environment"),
       command.add_flag("--collect", options.collects, "Merge completed results"),
       command
           .add_option("--submit", options.engine,

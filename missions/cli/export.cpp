@@ -131,11 +131,12 @@ void add_export(CLI::App& app, const Console& console, Action& action) {
   command->add_option("--out", options->out, "Folder for the files (default: the package)");
   command
       ->add_option("--lost", options->lost,
-                   "Number of a lost vehicle of the fleet. Its remaining views are redistributed")
+                   "Number of the lost vehicle. Its remaining views are distributed among the "
+                   "other vehicles")
       ->check(CLI::Range(1, 1000));
   command
       ->add_option("--after", options->after,
-                   "Time of loss in the timetable, in seconds (default: before its start)")
+                   "Time of loss in the timetable, in seconds (default: before the first take-off)")
       ->check(number_between(0.0, 1e9));
   add_set_option(*command, *keys);
   run_with_keys(*command, options, keys, export_package, console, action);

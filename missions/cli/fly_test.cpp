@@ -47,9 +47,9 @@ std::vector<std::filesystem::path> route_files(const std::filesystem::path& fold
   }
   std::ranges::sort(files);
   if (!files.empty()) return files;
-  throw Error(ErrorKind::bad_file,
-              folder.string() +
-                  " contains no autopilot mission; plan it with flight.vehicle and a georeference");
+  throw Error(ErrorKind::bad_file, folder.string() +
+                                       " contains no autopilot mission; plan the mission again "
+                                       "with flight.vehicle and a georeference");
 }
 
 /// Package to be tested, with its free space and the spaces that flights are evaluated against.

@@ -176,12 +176,12 @@ std::string head_text(const InitOptions& options) {
            options.out.string() +
            " --survey survey\n"
            "name: " +
-           name + "  # of the results\n";
+           name + "  # name of the results\n";
   }
   return "# Survey of a model, written by `skycap init`. Read each line and adapt it. Then:\n"
          "# skycap check " +
          options.out.string() + " and skycap plan " + options.out.string() + "\nname: " + name +
-         "  # of the results\n"
+         "  # name of the results\n"
          "scene:\n"
          "  model: " +
          model_text(options.target, options.out) +
@@ -238,7 +238,7 @@ std::string planner_text(const InitOptions& options, const Proposal& proposal) {
       "  scene_box: {}  # region of interest{}\n"
       "  view_distance: {:g}  # metres from a view to the surface\n"
       "  density: {:.3g}  # required points per cubic metre\n"
-      "  resolution_radius: {:g}  # metres, in which points are counted\n"
+      "  resolution_radius: {:g}  # metres, radius in which points are counted\n"
       "evaluation:\n"
       "  coverage_distance: {:g}  # metres; a surface point with a measurement within this "
       "distance is covered\n",
@@ -278,7 +278,7 @@ std::string unknown_text(const InitOptions& options, const Proposal& proposal,
                         vector_text(boxes[i].max()));
   }
   return fmt::format(
-      "  # The boxes leave out the column above the take-off point, in which the vehicle climbs "
+      "  # The boxes exclude the column above the take-off point, in which the vehicle climbs "
       "before\n"
       "  # the first scan: the pilot must check that it is free.\n"
       "  unknown_box: {}\n"
@@ -309,7 +309,7 @@ std::string flight_text(const InitOptions& options, const Proposal& proposal) {
     const double height = 0.5 * proposal.target.sizes().z();
     text += fmt::format(
         "  takeoff: [0, 0, 0]  # take-off and landing point\n"
-        "  takeoff_climb: {:.4g}  # metres straight up before the first leg\n",
+        "  takeoff_climb: {:.4g}  # metres, vertical climb before the first leg\n",
         height);
   }
   return text;
@@ -352,7 +352,7 @@ std::string photo_mission_text(const InitOptions& options) {
         "flight:\n"
         "  vehicle: {}  # a preset (skycap presets) or a description NAME.yaml\n"
         "  clearance: {:g}  # metres from the vehicle's centre to the prior data\n"
-        "  # A photo camera proves no space free. Outside the prior data, enlarged by their "
+        "  # A photo camera does not measure free space. Outside the prior data, enlarged by their "
         "uncertainty and the\n"
         "  # clearance, the air is assumed free; the pilot must check it for trees, wires and "
         "cranes.\n"
@@ -366,7 +366,7 @@ std::string photo_mission_text(const InitOptions& options) {
   return fmt::format(
              "# Photos of a model, written by `skycap init`. Read each line and adapt it. Then:\n"
              "# skycap check {0} and skycap plan {0}\n"
-             "name: {1}  # of the results\n"
+             "name: {1}  # name of the results\n"
              "prior:\n"
              "  # The surface to photograph: metres, z up, in the mission frame; otherwise add "
              "unit "
@@ -409,7 +409,7 @@ int init(const InitOptions& given, const Console& console) {
   }
   if (fs::exists(options.out)) {
     throw Error(ErrorKind::bad_usage,
-                options.out.string() + " already exists; choose another --out or remove the file");
+                options.out.string() + " already exists; use another --out or move the file");
   }
   if (options.sensor.empty()) options.sensor = default_sensor(options);
   if (!options.gsd && wizard::is_photo_camera(options.sensor)) {

@@ -109,7 +109,7 @@ void add_scan(const NextOptions& options, const std::string& name, const online:
   const bool is_aside = is_new && survey.proposal().has_pose_warning();
   console.err << fmt::format("{}: {} points{}{}{}\n", name, found.scan.points.size(),
                              is_new ? "" : "; already known, ignored",
-                             is_aside ? "; rejected, pose inconsistent with the map" : "",
+                             is_aside ? "; rejected: pose inconsistent with the map" : "",
                              left_out_text(found))
               << std::flush;
 }
@@ -177,9 +177,9 @@ Finished write_package(const LiveOptions& options, const config::MissionSetup& s
       fmt::format("{}: {} after {} scans, {} points\n", setup.name,
                   session::to_string(record.stop_reason), record.views.size(), record.cloud.size());
   if (const auto predicted = survey.visibility().unseen_share()) {
-    text +=
-        fmt::format("  region    {:.0f}% of the surface of planner.scene_box was never in view\n",
-                    100.0 * *predicted);
+    text += fmt::format(
+        "  region    {:.0f}% of the surface of planner.scene_box has not been observed\n",
+        100.0 * *predicted);
   }
   if (flight) text += package::flight_text(*flight);
   text += "  results   " + options.survey.string() + "\n";

@@ -152,8 +152,9 @@ void add_model(CLI::App& app, const Console& console, Action& action) {
   CLI::App* command = app.add_subcommand("model", "Download, export or render a scene model");
   const auto options = std::make_shared<ModelOptions>();
   command
-      ->add_option("name", options->name,
-                   "teapot, bunny, dragon, radcliffe-camera, ..., a mesh, or a mission file")
+      ->add_option(
+          "name", options->name,
+          "Model: teapot, bunny, dragon, radcliffe-camera, ..., a mesh file or a mission file")
       ->required();
   command->add_option("--out", options->out, "Write the mesh to this PLY file");
   command

@@ -214,8 +214,10 @@ int plan_photos(const PlanOptions& options, const config::MissionSetup& setup,
   console.out << photo::plan_text(setup, mission);
   if (mission.flight) console.out << package::flight_text(*mission.flight, options.is_verbose);
   console.out << "  results   " << folder.path().string() << "\n";
-  if (mission.flight) console.out << package::pilot_text(setup.flight(), *mission.flight);
-  console.out << photo::warnings_text(mission) << std::flush;
+  console.out << (mission.flight
+                      ? package::pilot_text(setup.flight(), *mission.flight, mission.warnings)
+                      : photo::warnings_text(mission))
+              << std::flush;
   return 0;
 }
 

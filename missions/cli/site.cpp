@@ -91,9 +91,9 @@ void read_base(const SiteOptions& options, wizard::ImportOptions& import_options
 /// Throws if only one of photo camera and ground sampling distance is set.
 void check_photo_options(const SiteOptions& options) {
   if (options.gsd && options.sensor.empty()) {
-    throw Error(ErrorKind::bad_usage,
-                "--gsd requires a photo camera; set --sensor to one of the photo cameras of skycap "
-                "presets");
+    throw Error(
+        ErrorKind::bad_usage,
+        "--gsd requires a photo camera; set --sensor to a photo camera listed by skycap presets");
   }
   if (!options.gsd && wizard::is_photo_camera(options.sensor)) {
     throw Error(ErrorKind::bad_usage, "--sensor " + options.sensor +
@@ -180,8 +180,8 @@ std::string make_command(const SiteOptions& options) {
   return command;
 }
 
-/// Writes a page of the map's objects, from which the user chooses one, if there are several.
-/// Exit code 1: there is no mission yet.
+/// Writes a page with the objects of the map if there are several, so that the user can choose one.
+/// Returns exit code 1 in that case, because no mission has been written.
 std::optional<int> show_objects(const SiteOptions& options, const wizard::SiteRequest& request,
                                 const fs::path& file, geometry::OutputFolder& folder,
                                 const Console& console) {
@@ -202,7 +202,7 @@ std::optional<int> show_objects(const SiteOptions& options, const wizard::SiteRe
   console.out
       << fmt::format(
              "{}: contains {} objects, {}{}; no mission written\n  map       {}\n  next      "
-             "open the map and click on the target, or choose it with --at "
+             "open the map and click the target, or choose it with --at "
              "LATITUDE,LONGITUDE, --id or --attribute\n",
              options.map.string(), objects.size(), some, objects.size() > 5 ? ", ..." : "",
              page.string())
@@ -245,7 +245,7 @@ int propose_site(const SiteOptions& options, const Console& console) {
                       "--vertical if they are not");
   }
   const Eigen::Vector3d pad = setup.flight().takeoff.value();
-  console.out << fmt::format("{}: a first mission for {}\n", file.string(), setup.name)
+  console.out << fmt::format("{}: first mission for {}\n", file.string(), setup.name)
               << site_data::format_priors(*setup.scene().priors)
               << fmt::format("  pad       {:g} {:g} {:g}\n", pad.x(), pad.y(), pad.z())
               << "  map       " << page_path.string() << "\n"
@@ -281,10 +281,9 @@ void add_site(CLI::App& app, const Console& console, Action& action) {
       ->add_option("--vertical", options->vertical,
                    "Vertical datum of files that do not specify one: ellipsoid or geoid")
       ->check(CLI::IsMember({to_string(datums[0]), to_string(datums[1])}));
-  command->add_option(
-      "--base", options->base,
-      "Base height of outlines, in --vertical, in metres; or ground: the height of the "
-      "take-off point");
+  command->add_option("--base", options->base,
+                      "Base height of outlines in metres, in the datum of --vertical, or ground: "
+                      "the height of the take-off point");
   command
       ->add_option("--height", options->height,
                    "Height of outlines that contain no height, in metres")
@@ -294,10 +293,9 @@ void add_site(CLI::App& app, const Console& console, Action& action) {
   command->add_option("--obstacle", options->obstacles, "Further file with obstacles")
       ->type_size(1)
       ->allow_extra_args(false);
-  command->add_option(
-      "--vehicle", options->vehicle,
-      "Vehicle preset or file (default: the preset with the photo camera, otherwise "
-      "generic)");
+  command->add_option("--vehicle", options->vehicle,
+                      "Vehicle preset or file (default: the preset that carries the photo camera, "
+                      "otherwise generic)");
   command->add_option(
       "--sensor", options->sensor,
       "Sensor preset (skycap presets) or LiDAR file NAME.yaml (default: the vehicle's "

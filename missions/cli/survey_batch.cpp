@@ -234,10 +234,10 @@ void add_batch_options(CLI::App& command, BatchOptions& options, const std::stri
   command.add_option("file", options.file, what)->required();
   command.add_option(
       "--out", options.out,
-      "Folder for the results (default: results/NAME). Complete runs are not repeated");
+      "Folder for the results (default: results/NAME). Completed runs are not repeated");
   command
       .add_option("--threads", options.threads,
-                  "Number of parallel runs, 0: all processors (default: 0; with --index: 1)")
+                  "Number of parallel runs; 0: all processors (default: 0; with --index: 1)")
       ->check(CLI::Range(0, 1024));
   auto* lists = command.add_flag("--list", options.lists, "Print the runs and exit");
   for (CLI::Option* other : add_task_options(command, options.task, "run")) lists->excludes(other);

@@ -34,8 +34,8 @@ int submit(const TaskWork& work, const TaskOptions& options, const Console& cons
     return console.stop.stop_requested() ? interrupted_exit_code(console) : work.collect(folder);
   }
   if (!submission.job.empty() && !work.is_quiet) {
-    console.out << fmt::format("Slurm job {}: {} tasks of {} runs\nresults: {}\n", submission.job,
-                               submission.tasks.tasks, submission.tasks.chunk,
+    console.out << fmt::format("Slurm job {}: {} tasks, up to {} runs per task\nresults: {}\n",
+                               submission.job, submission.tasks.tasks, submission.tasks.chunk,
                                folder.path().string())
                 << std::flush;
   }

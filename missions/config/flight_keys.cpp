@@ -200,17 +200,18 @@ std::vector<Key> conduct_keys() {
                  "Order of the views in the exported mission: shortest tour found, or order of the "
                  "survey."),
       choice_key("flight.free_space", {"measured", "assumed"}, section(&FlightSection::free_space),
-                 "Free space of a mission with a photo camera, which measures none. measured: only "
-                 "outside of flight.unknown_box. assumed: everywhere beyond the clearance and the "
+                 "Free space in a mission with a photo camera, which does not measure free space. "
+                 "measured: only outside flight.unknown_box. assumed: everywhere beyond the "
+                 "clearance and the "
                  "uncertainty of prior data; the pilot must check the airspace for trees, wires "
                  "and anything that the prior data does not contain."),
       choice_key("flight.style", {"stop", "blend", "smooth", "fly-through"},
                  flight(&flight::FlightOptions::style),
-                 "Flight style at the corners of a leg. stop: stop in each corner. blend: round "
-                 "the corners. smooth: one smooth curve, where it is verified and faster. "
+                 "Flight style at the corners of the route. stop: stop at each corner. blend: "
+                 "round the corners. smooth: one smooth curve, where it is verified and faster. "
                  "fly-through: fly-through capture without stops at views, at a speed that keeps "
                  "images sharp (sensor.exposure). Trajectories (csv, ned-csv, tum) and KML contain "
-                 "curves; the other files stop in corners and at views."),
+                 "curves; with the other files, the vehicle stops at corners and views."),
   };
 }
 

@@ -183,9 +183,9 @@ void check_sensor(const MissionDocument& document) {
     document.reject("sensor.max_range", "must be greater than sensor.min_range; raise it");
   }
   if (static_cast<double>(camera.width) * camera.height > 1e8) {
-    document.reject(
-        "sensor.width",
-        "the image has more than 1e8 pixels (sensor.width times sensor.height); reduce its size");
+    document.reject("sensor.width",
+                    "the image has more than 100 million pixels (sensor.width times "
+                    "sensor.height); reduce its size");
   }
   check_capture(document);
 }

@@ -254,7 +254,7 @@ std::string mission_json_schema() {
 
 std::string mission_key_table() {
   std::ostringstream table;
-  table << "| key | takes | default | meaning |\n| --- | --- | --- | --- |\n";
+  table << "| key | value | default | meaning |\n| --- | --- | --- | --- |\n";
   for (const Key& key : mission_keys()) {
     add_to_table(key, "", table);
   }

@@ -15,12 +15,10 @@ auto rule(auto member) {
 
 /// Returns the key `photo.patterns`. An empty list means no patterns.
 Key patterns_key() {
-  return otherwise(
-      "facade, dome, oblique",
-      key_for(
-          "photo.patterns", KeyType::texts, photo(&PhotoSection::patterns),
-          "Flight patterns that are compared with the plan and provide candidate photos for it: "
-          "nadir, oblique, dome, facade. [] for none."));
+  return otherwise("facade, dome, oblique",
+                   key_for("photo.patterns", KeyType::texts, photo(&PhotoSection::patterns),
+                           "Flight patterns that are compared with the plan and provide candidate "
+                           "photos for it: nadir, oblique, dome, facade. []: none."));
 }
 
 /// Returns the key `photo.pattern`, which replaces the selection of photos.
@@ -41,9 +39,10 @@ std::vector<Key> photo_keys() {
                            "the view distance: gsd times focal length over pixel pitch.")),
       otherwise(
           "3; 4 with photo.pass: coarse",
-          integer_key("photo.min_partners", "", between(2, 6), photo(&PhotoSection::min_partners),
-                      "Stereo partners that one photo of each surface point must have: K. A "
-                      "point is satisfied with K + 1 suitable photos. Use 4 for plain walls.")),
+          integer_key(
+              "photo.min_partners", "", between(2, 6), photo(&PhotoSection::min_partners),
+              "K: number of stereo partners that at least one photo of each surface point must "
+              "have. A point is satisfied with K + 1 suitable photos. Use 4 for plain walls.")),
       angle_key("photo.max_incidence_deg", between(45, 85),
                 rule(&survey::photo::StereoRule::max_incidence),
                 "Maximum angle of incidence of a photo's ray at the surface."),
@@ -53,11 +52,10 @@ std::vector<Key> photo_keys() {
       angle_key("photo.max_parallax_deg", between(1, 60),
                 rule(&survey::photo::StereoRule::max_parallax),
                 "Maximum parallax of stereo partners, at the surface."),
-      choice_key(
-          "photo.poses", {"known", "unknown"}, photo(&PhotoSection::poses),
-          "Poses of the photos in the photogrammetry program. known: RTK or PPK poses are "
-          "given to it. unknown: the program estimates them; photos are added until all of them "
-          "register to one another."),
+      choice_key("photo.poses", {"known", "unknown"}, photo(&PhotoSection::poses),
+                 "Poses of the photos in the photogrammetry program. known: the program imports "
+                 "the RTK or PPK poses. unknown: the program estimates the poses; photos are added "
+                 "until all photos can be registered to one another."),
       patterns_key(),
       pattern_key(),
       number_key("photo.forward_overlap", "share", between(0, 0.95),
@@ -71,7 +69,8 @@ std::vector<Key> photo_keys() {
       integer_key("photo.max_photos", "", between(1, 100'000), photo(&PhotoSection::max_photos),
                   "Maximum number of photos."),
       choice_key("photo.pass", {"coarse", "final"}, photo(&PhotoSection::pass),
-                 "Pass of two, for targets of which only an outline is known. coarse: three times "
+                 "First or second of two flights, for targets of which only an outline is known. "
+                 "coarse: three times "
                  "photo.gsd, "
                  "for a first model of the target. final: photo.gsd."),
   };

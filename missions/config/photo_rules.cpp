@@ -97,10 +97,10 @@ void check_photo(const MissionDocument& document) {
   }
   if (!has_target(document)) {
     document.reject("sensor.photo_camera",
-                    "requires a target whose shape is known; add prior data with role: target: a "
-                    "mesh, a city model, or an outline with its height. With an outline, plan two "
-                    "flights: photo.pass: coarse, then photo.pass: final with the mesh that "
-                    "photogrammetry produces from the first");
+                    "requires a target whose shape is known; add prior data with role: target (a "
+                    "mesh, a city model or an outline with a height). With an outline, plan two "
+                    "flights: first photo.pass: coarse, then photo.pass: final with the mesh "
+                    "reconstructed from the photos of the first flight");
   }
   if (document.photo.rule.min_parallax >= document.photo.rule.max_parallax) {
     document.reject("photo.min_parallax_deg",

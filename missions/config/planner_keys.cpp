@@ -63,8 +63,8 @@ std::vector<Key> which_planner() {
           choice_key(
               "planner.goal", {"minutes", "views"}, [](auto& m) -> auto& { return m.planner.goal; },
               "Goal of the planner skycap: minimise the flight time or the number of views. "
-              "minutes: the cost of a view is its stop, or one view distance of path without a "
-              "vehicle. views: the cost of a view is three view distances.")),
+              "minutes: the cost of a view is its stop or, without a vehicle, one view distance of "
+              "path. views: the cost of a view is three view distances.")),
   };
 }
 
@@ -151,7 +151,8 @@ std::vector<Key> occlusion_keys() {
           "Maximum number of evaluations in each of the two optimisations of nonlinear_program."),
       choice_key("planner.observing_direction", {"ray", "image_axis"},
                  see(&See::observing_direction),
-                 "Observing direction of a point: its ray or the optical axis."),
+                 "Direction from which a point counts as observed: along its ray or along the "
+                 "optical axis."),
       number_key("planner.occluder_spacing", "m", above(0, 1e3), see(&See::occluder_spacing),
                  "Spacing of the sparse cloud used to find the unoccluded direction."),
       otherwise("give_up; with the preset building: defer",

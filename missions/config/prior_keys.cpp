@@ -142,8 +142,8 @@ std::vector<Key> source_pose_keys() {
       required(choice_key(
           "role", to_strings({Role::target, Role::obstacle, Role::terrain, Role::truth}),
           source(&Source::role),
-          "Role in the survey. target: the object to survey; predicted surface where it is not "
-          "measured yet. obstacle: every leg avoids it. terrain: the ground. truth: ground truth "
+          "Role in the survey. target: the object to survey; serves as predicted surface until it "
+          "is measured. obstacle: every leg avoids it. terrain: the ground. truth: ground truth "
           "for the simulated sensor, instead of scene.model. No role marks space as free.")),
       optional_text_key("crs", "that of the file, if any; otherwise the mission frame",
                         source(&Source::crs),

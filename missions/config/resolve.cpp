@@ -533,7 +533,7 @@ MissionSetup read_mission(const std::filesystem::path& file,
             (has_target(document)
                  ? ", or plan with --use-prior-as-truth, which uses the targets as ground truth"
                  : "") +
-            ". A mission without a scene is a live survey, which requires skycap next, serve and "
+            ". A mission without a scene is a live survey, which uses skycap next, serve and "
             "finish");
   }
   return resolve(std::move(document), report);

@@ -24,13 +24,13 @@ std::vector<Key> orbit_keys() {
                  "Height of the first circle."),
       number_key("scan.orbit.max_height", "m", between(-1e4, 1e4), orbit(&Orbit::max_height),
                  "Height of the last circle."),
-      integer_key("scan.orbit.circles", "", between(1, 1000), orbit(&Orbit::circles),
-                  "Number of circles, evenly spaced in height. A single circle is at the height of "
-                  "the first circle."),
+      integer_key(
+          "scan.orbit.circles", "", between(1, 1000), orbit(&Orbit::circles),
+          "Number of circles, evenly spaced in height. A single circle is flown at min_height."),
       number_key("scan.orbit.speed", "m/s", above(0, 100), orbit(&Orbit::speed),
                  "Speed along the circles and the climbs between them."),
       angle_key("scan.orbit.start_deg", between(-360, 360), orbit(&Orbit::start),
-                "Start of the circles: direction from the centre, anticlockwise from east."),
+                "Start of the circles: direction from the centre, counter-clockwise from east."),
   };
 }
 

@@ -11,7 +11,7 @@ Key copies_key() {
   Key key = key_for(
       "scene.copies", KeyType::vectors, [](auto& m) -> auto& { return m.scene.copies; },
       "Copies of the model, each [east, north, turn_deg]: offset from position in metres and "
-      "anticlockwise rotation about the vertical axis.");
+      "counter-clockwise rotation about the vertical axis.");
   key.range = between(-1e6, 1e6);
   const auto turned = [](const KeyValue& value, double factor) {
     auto copies = std::get<std::vector<Eigen::Vector3d>>(value);

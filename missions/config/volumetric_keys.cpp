@@ -51,10 +51,12 @@ std::vector<Key> gain_keys() {
                  "Factor of the visibility weight of rse, oa and uv at a voxel of occupancy p: p "
                  "as in the evaluation code, or 1 - p as published."),
       choice_key("volumetric.rse_end", {"code", "paper"}, gain(&GainSettings::rear_side_end),
-                 "Rays ending on a surface that rse counts: all, as in the evaluation code, or "
-                 "only those from an uncertain voxel, as published."),
+                 "Rays that end on a surface and are counted by rse: all rays, as in the "
+                 "evaluation code, or only rays from an uncertain voxel, as published."),
       choice_key("volumetric.af_share", {"all_rays", "hitting_rays"},
-                 gain(&GainSettings::area_share), "Rays that af counts as the total."),
+                 gain(&GainSettings::area_share),
+                 "Denominator of the fractions in af: all rays, or only rays with a hit (occupied "
+                 "or shadowed voxel)."),
   };
 }
 

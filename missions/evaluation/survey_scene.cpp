@@ -178,11 +178,11 @@ geometry::View SurveyScene::first_view(std::uint64_t seed) const {
   if (!initial_pattern.empty()) return initial_pattern.front();
   if (const auto& start = begins.view) {
     if (!reachable().is_empty()) return *start;
-    throw Error(
-        ErrorKind::bad_config,
-        "start.position is inside the model or enclosed by it: a sphere with a radius of " +
-            metres_text(radius_ + reachable().cell()) +
-            " m does not fit through any opening; move it or lower evaluation.passage_radius");
+    throw Error(ErrorKind::bad_config,
+                "start.position is inside the model or enclosed by it: a sphere with a radius of " +
+                    metres_text(radius_ + reachable().cell()) +
+                    " m does not fit through any opening; move start.position or lower "
+                    "evaluation.passage_radius");
   }
 
   const survey::ViewLimits& limits = options_.survey.planner.limits;
@@ -199,8 +199,8 @@ geometry::View SurveyScene::first_view(std::uint64_t seed) const {
   throw Error(ErrorKind::bad_config,
               "no random start view at the view distance of " + metres_text(view_distance_) +
                   " m satisfies limits.ground_clearance, the gimbal's pitch limits, "
-                  "evaluation.passage_radius, the "
-                  "site and flight.unknown_box; relax them or set start.position");
+                  "evaluation.passage_radius, the site limits and flight.unknown_box; relax these "
+                  "limits or set start.position");
 }
 
 Admissible SurveyScene::admissible() const {

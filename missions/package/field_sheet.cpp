@@ -276,13 +276,12 @@ std::string figures(const FieldSheetSite& site, const SurveyMission& mission) {
   if (mission.written) {
     const WrittenCoverage& part = mission.written->parts.front();
     coverage = percent_text(part.again.visible.value_or(part.again.all));
-    of = fmt::format("of the {}surface, by the files; {} of {} views",
+    of = fmt::format("of the {}surface, covered by the route files; {} of {} views",
                      part.again.visible ? "visible " : "", part.views, mission.written->planned);
   }
   return "<div class=\"figures\">" +
          figure(altitudes.empty() ? "none" : altitudes, "return altitude above take-off") +
-         figure(time,
-                support::counted(views, "view") + ", in the air, without changes of battery") +
+         figure(time, support::counted(views, "view") + ", flight time without battery changes") +
          figure(std::to_string(sorties), batteries_text(all)) + figure(coverage, of) + "</div>\n";
 }
 
@@ -331,7 +330,7 @@ std::vector<std::string> checks(const flight::FlightOptions& options, const Surv
   if (options.wind_speed > 0.0) wind += fmt::format(" (planned for {:g} m/s)", options.wind_speed);
   items.push_back(wind + fmt::format("; battery at {:g} °C or warmer", options.temperature));
   items.push_back("Not verified: " + unverified_text(options, mission));
-  items.push_back(fmt::format("Positioning within {:g} m ({}) before take-off",
+  items.push_back(fmt::format("Position error at most {:g} m ({}) before take-off",
                               options.position_error,
                               options.position_error < 0.5 ? "RTK fixed" : "GNSS"));
   items.push_back("Sensor: " + site.sensor + "; lens clean, storage empty, clock set");
@@ -407,7 +406,7 @@ std::string field_sheet(const FieldSheetSite& site, const flight::FlightOptions&
   html += "</div><div>\n<h2>Check</h2>\n" +
           list("ul", " class=\"check\"", checks(options, mission, site));
   if (const auto items = missing_items(mission); !items.empty()) {
-    html += "<h2>What will be missing</h2>\n" + list("ul", "", items);
+    html += "<h2>Expected gaps</h2>\n" + list("ul", "", items);
   }
   for (const SheetList& more : site.lists) {
     html += "<h2>" + escaped(more.title) + "</h2>\n" + list("ul", "", more.items);
@@ -415,8 +414,8 @@ std::string field_sheet(const FieldSheetSite& site, const flight::FlightOptions&
   html += "</div></div>\n<h2>Sorties and batteries</h2>\n" + sorties_table(mission);
   return html +
          "<p class=\"foot\">Arrows: view directions. Grey and red: surface to be surveyed, covered "
-         "and not covered by the route files. Lengths in metres; energy by the model of the "
-         "vehicle. Made by Skycap.</p>\n</body></html>\n";
+         "and not covered by the route files. Lengths in metres; energy from the vehicle model. "
+         "Made by Skycap.</p>\n</body></html>\n";
 }
 
 }  // namespace skycap::missions::package

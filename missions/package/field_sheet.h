@@ -28,7 +28,8 @@ struct FieldSheetSite {
   std::string mission;  ///< Name of the mission.
   std::string sensor;   ///< Sensor name for display.
   double survey_coverage = 0.0;
-  std::string coverage_of = "of the surface, by the survey";  ///< Meaning of `survey_coverage`.
+  std::string coverage_of =
+      "of the surface, covered by the survey";  ///< Meaning of `survey_coverage`.
   /// Sample positions on the surface to be surveyed, for the map. May be empty.
   std::span<const Eigen::Vector3f> surface{};
   /// For each sample position, 1 if the survey covers it. The coverage of the written files is used

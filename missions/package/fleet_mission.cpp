@@ -147,7 +147,7 @@ flight::FleetSplit share(flight::FleetGoal goal, flight::VerifiedCosts& costs,
   }
   if (!split.parts.empty()) return split;
   throw Error(ErrorKind::bad_config,
-              "the views cannot be distributed over flight.vehicles: at least one of the vehicles "
+              "the views cannot be distributed among flight.vehicles: at least one of the vehicles "
               "cannot reach enough of them");
 }
 

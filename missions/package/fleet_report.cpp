@@ -59,8 +59,7 @@ std::string fleet_text(const FleetMission& fleet, bool is_verbose) {
         gap(fleet.total_flight_time, fleet.lower_bound.total_flight_time));
   }
   text += fmt::format(
-      "  separation at least {:.2f} m at all times, verified; it delays the last landing by {:.0f} "
-      "s\n",
+      "  separation minimum {:.2f} m at all times, verified; delays the last landing by {:.0f} s\n",
       fleet.distance, fleet.delay);
   for (const TimetableRow& row : fleet.timetable) {
     text +=

@@ -178,7 +178,7 @@ class RouteFiles {
       if (parts.size() > 1) {
         notes.push_back(names.front() + " to " + names.back() +
                         " are one flight: set finish action \"None\" and start each file where the "
-                        "one before ends");
+                        "previous one ends");
       }
       for (const std::string& note : notes) add_note(note);
     } catch (const Error& error) {
@@ -248,10 +248,11 @@ class RouteFiles {
         return flight::fixed(flight_time(of) / 60.0, 1) + " min";
       };
       if (photos > 0) {
-        notes.push_back(plan.name + ": " + name +
-                        (is_fly_through ? " takes " : " could take (flight.style: fly-through) ") +
-                        std::to_string(photos) + " photos without a stop, in " + minutes(faster) +
-                        " instead of " + minutes(plan));
+        notes.push_back(
+            plan.name + ": " + name +
+            (is_fly_through ? " takes " : " could, with flight.style: fly-through, take ") +
+            std::to_string(photos) + " photos without a stop, in " + minutes(faster) +
+            " instead of " + minutes(plan));
       }
       if (photos > 0 && is_fly_through) return faster;
     }

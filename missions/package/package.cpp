@@ -361,7 +361,7 @@ PackageSummary parse_package_summary(const std::string& text, const std::string&
     }
     return summary;
   } catch (const Json::exception& error) {
-    fail(name, std::string("is not a package's summary (") + error.what() + ")");
+    fail(name, std::string("is not the summary of a package (") + error.what() + ")");
   }
 }
 
@@ -379,7 +379,8 @@ PackagedSurvey read_package(const std::filesystem::path& folder,
                             const std::vector<config::KeyOverride>& overrides) {
   PackageSummary summary = read_package_summary(folder, overrides);
   if (!summary.pad) {
-    fail(folder / summary_name, "is a survey without a vehicle; plan it with flight.vehicle");
+    fail(folder / summary_name,
+         "is a survey without a vehicle; plan the survey with flight.vehicle");
   }
   if (summary.mission.flight().views == flight::MissionViews::replanned && !summary.has_choice) {
     fail(folder / summary_name,

@@ -261,8 +261,8 @@ std::vector<std::string> pilot_warnings(const SurveyMission& flight) {
   return warnings;
 }
 
-std::string pilot_text(const flight::FlightOptions& options, const SurveyMission& flight) {
-  if (!has_route(flight)) return "";
+std::string pilot_text(const flight::FlightOptions& options, const SurveyMission& flight,
+                       const std::vector<std::string>& more) {
   std::string text;
   for (const PilotSteps& part : pilot_steps(options, flight)) {
     text += "To do before the flight, " + part.whom + ":\n";
@@ -270,11 +270,15 @@ std::string pilot_text(const flight::FlightOptions& options, const SurveyMission
       text += fmt::format("  {}. {}\n", i + 1, part.steps[i]);
     }
   }
-  if (flight.fleet) {
-    text += "To do, all vehicles: start each sortie at its time in timetable.csv.\n";
+  Warnings warnings = more;
+  if (has_route(flight)) {
+    if (flight.fleet) {
+      text += "To do, all vehicles: start each sortie at its time in timetable.csv.\n";
+    }
+    text += "Not verified; the pilot must check: " + unverified_text(options, flight) + ".\n";
+    for (const std::string& warning : pilot_warnings(flight)) warnings.push_back(warning);
   }
-  text += "Not verified; the pilot must check: " + unverified_text(options, flight) + ".\n";
-  for (const std::string& warning : pilot_warnings(flight)) text += "Warning: " + warning + ".\n";
+  for (const std::string& warning : warnings) text += "Warning: " + warning + ".\n";
   return text;
 }
 

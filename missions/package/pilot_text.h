@@ -26,8 +26,10 @@ std::string unverified_text(const flight::FlightOptions& options, const SurveyMi
 std::vector<std::string> pilot_warnings(const SurveyMission& flight);
 
 /// Returns numbered steps for the autopilot of the vehicle, or of each vehicle of a fleet. These
-/// are followed by a list of unverified conditions and by warnings, one line "Warning: ..." each.
-/// Returns an empty string without a route.
-std::string pilot_text(const flight::FlightOptions& options, const SurveyMission& flight);
+/// are followed by a list of unverified conditions. Then follow the warnings, one line
+/// "Warning: ..." each: first `more`, without prefix and full stop, then pilot_warnings(). Without
+/// a route, returns `more` only.
+std::string pilot_text(const flight::FlightOptions& options, const SurveyMission& flight,
+                       const std::vector<std::string>& more = {});
 
 }  // namespace skycap::missions::package

@@ -110,11 +110,11 @@ std::string colmap_script(const PhotoPlan& plan, const PoseSigmas& sigmas) {
       "#",
       "#   sh reconstruct.sh IMAGES [known | unknown]",
       "#",
-      "# IMAGES: folder of the photos, with the names of images.txt.",
+      "# IMAGES: folder of the photos, named as in images.txt.",
       "# known (default): COLMAP uses the poses of images.txt. Use it for simulated photos,",
-      "# or replace images.txt by the measured poses first.",
+      "# or replace the poses in images.txt with the measured poses first.",
       "# unknown: COLMAP estimates the poses, and aligns the model with priors.txt.",
-      "# One thread extracts features: with several, image ids differ from those of images.txt.",
+      "# Features are extracted by one thread, because several threads change the image IDs.",
       "set -eu",
       "images=$1",
       "poses=${2:-known}",
@@ -152,7 +152,7 @@ void write_colmap(const PhotoPlan& plan, std::span<const survey::photo::PhotoPai
   geometry::OutputFolder output(folder);
   output.write("cameras.txt", colmap_cameras(plan.camera));
   output.write("images.txt", colmap_images(plan, extension));
-  output.write("points3D.txt", "# No points: the photos are planned.\n");
+  output.write("points3D.txt", "# No points, because the photos have not been taken yet.\n");
   output.write("pairs.txt", colmap_pairs(plan, pairs, extension));
   output.write("priors.txt", colmap_priors(plan, sigmas, extension));
   output.write("reconstruct.sh", colmap_script(plan, sigmas));

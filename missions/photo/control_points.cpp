@@ -57,12 +57,14 @@ std::vector<ControlPoint> read_control_points(const std::string& text,
       values[axis] = *value;
     }
     if (!is_local && (std::abs(values.x()) > 90.0 || std::abs(values.y()) > 180.0)) {
-      fail(i + 1, "has a latitude outside [-90, 90] or a longitude outside [-180, 180]");
+      fail(i + 1,
+           "has a latitude outside the range -90 to 90 degrees or a longitude outside the range "
+           "-180 to 180 degrees");
     }
     point.position = is_local ? values : frame->to_local({values.x(), values.y(), values.z()});
     points.push_back(std::move(point));
   }
-  if (points.empty()) fail(lines.size(), "is the last line, and the file contains no points");
+  if (points.empty()) fail(lines.size(), "is the last line: the file contains no points");
   return points;
 }
 

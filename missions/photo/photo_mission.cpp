@@ -195,8 +195,8 @@ void warn_about_height(const survey::photo::PhotoSite& site, PhotoMission& missi
   const double above = box.min().z() - site.foot;
   if (above < much && box.max().z() > site.foot) return;
   mission.warnings.push_back(
-      fmt::format("the base of the target is {:.1f} m {} the ground; check vertical and offset of "
-                  "the prior data",
+      fmt::format("the base of the target is {:.1f} m {} the ground; check the keys vertical and "
+                  "offset of the prior data",
                   std::abs(above), above > 0.0 ? "above" : "below"));
 }
 
@@ -216,23 +216,25 @@ void add_warnings(const config::MissionSetup& setup, PhotoMission& mission) {
   }
   const auto& unreached = mission.flight->route.unreached;
   if (!unreached.empty()) {
-    mission.warnings.push_back(fmt::format(
-        "{} of {} photos are not part of the flight, and the figures include them; the first: {}",
-        unreached.size(), mission.result.views.size(), unreached.front().reason));
+    mission.warnings.push_back(
+        fmt::format("{} of {} photos are not part of the flight but are included in the figures; "
+                    "reason for the first: {}",
+                    unreached.size(), mission.result.views.size(), unreached.front().reason));
   }
   if (const auto limit = setup.survey().limits.max_time;
       limit && mission.flight->route.duration > *limit) {
-    mission.warnings.push_back(fmt::format(
-        "the flight takes {:.1f} min, more than limits.max_minutes ({:.1f} min), which is compared "
-        "with the tour between photos; lower photo.max_photos",
-        mission.flight->route.duration / 60.0, *limit / 60.0));
+    mission.warnings.push_back(
+        fmt::format("the flight takes {:.1f} min, more than limits.max_minutes ({:.1f} min), which "
+                    "limits only the tour between photos; lower photo.max_photos",
+                    mission.flight->route.duration / 60.0, *limit / 60.0));
   }
   if (document.photo.poses == survey::photo::PosesGiven::known &&
       setup.flight().position_error > 0.3) {
-    mission.warnings.push_back(fmt::format(
-        "the positions of photos are known to {:.1f} m (flight.position_error): use RTK or PPK, "
-        "or set photo.poses: unknown and photo.min_partners: 4",
-        setup.flight().position_error));
+    mission.warnings.push_back(
+        fmt::format("the photo positions have an error of up to {:.1f} m (flight.position_error); "
+                    "use RTK or PPK, "
+                    "or set photo.poses: unknown and photo.min_partners: 4",
+                    setup.flight().position_error));
   }
 }
 

@@ -56,7 +56,7 @@ struct PhotoMission {
 /// Warning in the results of a mission that assumes free space.
 inline constexpr const char* assumed_space_warning =
     "the airspace around the model is assumed free. Check it for trees, wires and anything that "
-    "the model does not contain.";
+    "the model does not contain";
 
 /// Plans photos and the route through them, verified at the clearance against prior data. Replaces
 /// photos that the route cannot reach, up to twice. Throws the same errors as plan_photos() and

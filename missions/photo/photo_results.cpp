@@ -126,7 +126,7 @@ std::string trigger_text(const config::MissionSetup& setup) {
   if (!setup.flight().has_vehicle()) return "No vehicle: photos.csv lists the positions.";
   return setup.flight().style == flight::FlightStyle::pass
              ? "Photos on straight legs with even spacing are taken in flight, all others at stops."
-             : "The vehicle stops at each photo; the route file triggers it.";
+             : "The vehicle stops at each photo; the route file triggers the camera.";
 }
 
 double storage_bytes(const survey::photo::PhotoPlan& plan) {
@@ -198,8 +198,9 @@ Blocked make_sights(const config::MissionSetup& setup, const PhotoAirspace& airs
 package::SheetList camera_list(const survey::photo::PhotoPlan& plan) {
   const geometry::PhotoCameraConfig& camera = plan.camera;
   package::SheetList list{"Camera: " + camera.name, {}};
-  list.items.push_back(fmt::format("Focus: {:.1f} m, then off; GSD {:.2f} mm at this distance",
-                                   plan.view_distance, 1e3 * plan.gsd));
+  list.items.push_back(
+      fmt::format("Focus at {:.1f} m, then switch autofocus off; GSD {:.2f} mm at this distance",
+                  plan.view_distance, 1e3 * plan.gsd));
   list.items.push_back(fmt::format(
       "Exposure time at most 1/{:.0f} s, shutter {}; fixed white "
       "balance; JPEG, without lens correction",

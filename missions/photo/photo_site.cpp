@@ -24,11 +24,12 @@ void require_inside_fence(const config::MissionSetup& setup, const geometry::Mes
   const AlignedBox3d box = geometry::bounding_box(targets);
   const Vector3d centre = box.center();
   if (fence.empty() || geometry::contains(fence, centre.head<2>())) return;
-  throw Error(ErrorKind::bad_config,
-              fmt::format("the target is outside site.geofence: the centre of its base is at "
-                          "({:.1f}, {:.1f}, {:.1f}) m of the mission frame; set crs and offset, or "
-                          "place, of the prior data to those of the program that wrote the file",
-                          centre.x(), centre.y(), box.min().z()));
+  throw Error(
+      ErrorKind::bad_config,
+      fmt::format("the target is outside site.geofence: the centre of its base is at ({:.1f}, "
+                  "{:.1f}, {:.1f}) m in the mission frame; set the keys crs and offset, or the "
+                  "key place, of the prior data to the values of the program that wrote the file",
+                  centre.x(), centre.y(), box.min().z()));
 }
 
 geometry::Mesh select_targets(const config::MissionSetup& setup) {
@@ -36,7 +37,7 @@ geometry::Mesh select_targets(const config::MissionSetup& setup) {
   if (targets.triangles.empty()) {
     throw Error(ErrorKind::bad_config,
                 "prior data with role: target has no surface; photos require a mesh, a city model "
-                "or an outline with its height");
+                "or an outline with a height");
   }
   require_inside_fence(setup, targets);
   return targets;

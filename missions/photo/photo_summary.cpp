@@ -53,11 +53,11 @@ std::string describe(MissingReason reason) {
     case MissingReason::min_standoff:
       return "too close to obstacles or outside the airspace";
     case MissingReason::incidence:
-      return "seen only above the maximum incidence";
+      return "visible only at more than the maximum incidence";
     case MissingReason::gimbal:
       return "outside the gimbal's range";
     case MissingReason::height:
-      return "seen only from below the minimum height";
+      return "visible only from below the minimum height";
     case MissingReason::not_taken:
       return "attainable, but requires too many photos for its area";
   }
@@ -81,14 +81,14 @@ std::string plan_text(const config::MissionSetup& setup, const PhotoMission& mis
                       percent(result.figures.attainable_share(result.figures.satisfied)));
   text += missing_text(result);
   if (result.bound.photos > 0) {
-    text += fmt::format("  bound     at least {} photos for the same samples ({:.0f}% fewer)\n",
-                        result.bound.photos,
-                        100.0 - 100.0 * static_cast<double>(result.bound.photos) /
-                                    static_cast<double>(result.repaired_photos));
+    text += fmt::format(
+        "  bound     the same samples require at least {} photos; the plan has {} without "
+        "connecting photos\n",
+        result.bound.photos, result.repaired_photos);
   }
   if (result.connecting > 0) {
-    text +=
-        fmt::format("  graph     {} photos added so that all photos register\n", result.connecting);
+    text += fmt::format("  graph     {} photos added so that all photos can be registered\n",
+                        result.connecting);
   }
   return text + patterns_text(mission) +
          "  limits    windows, glass, water, thin wires and plain walls are not modelled\n";
@@ -96,7 +96,7 @@ std::string plan_text(const config::MissionSetup& setup, const PhotoMission& mis
 
 std::string warnings_text(const PhotoMission& mission) {
   std::string text;
-  for (const std::string& warning : mission.warnings) text += "Warning: " + warning + "\n";
+  for (const std::string& warning : mission.warnings) text += "Warning: " + warning + ".\n";
   return text;
 }
 

@@ -25,7 +25,7 @@ Verdict district_verdict(const Json& summary) {
     const auto visited = flight.at("views_flown").get<std::size_t>();
     verdict.lights = {
         {"views in the flight, out of " + std::to_string(views), "flight.views_flown", "count",
-         visited, visited == views ? "green" : "amber", "green: all of them"},
+         visited, visited == views ? "green" : "amber", "green: all views"},
         {"minimum clearance (verified)", "flight.min_clearance_m", "metres",
          flight.at("min_clearance_m"), "green", "green: every leg keeps the required clearance"},
         {"sorties", "flight.sorties", "count", flight.at("sorties"), "none", ""},

@@ -136,8 +136,8 @@ std::string object_map(const std::string& title, const std::vector<site_data::Ob
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width\"><meta http-equiv=\"Content-Security-Policy\" "
       "content=\"default-src 'none'; script-src '{}'; style-src '{}'\"><title>{}</title>"
-      "<style>{}</style></head>\n<body><header><h1>{}: {} objects. Click on the object to "
-      "survey. Zoom with the wheel; drag to move the map</h1><code id=\"command\">{}</code><span "
+      "<style>{}</style></head>\n<body><header><h1>{}: {} objects. Click the object to survey. "
+      "Zoom with the mouse wheel; drag to move the map</h1><code id=\"command\">{}</code><span "
       "id=\"about\"></span>"
       "</header><svg></svg>\n<script type=\"application/json\" id=\"map\">{}</script>\n"
       "<script>{}</script></body></html>\n",

@@ -178,7 +178,7 @@ std::string photo_page(const ResultFinder& results, std::size_t max_points) {
         {"maps",
          {{"gsd", scale("ground sampling distance", gsd_scale, "millimetres")},
           {"observations", scale("photos of a point", count_scale, "count")},
-          {"parallax", scale("largest parallax of partners", parallax_scale, "degrees")}}},
+          {"parallax", scale("maximum parallax of stereo partners", parallax_scale, "degrees")}}},
         {"histograms",
          {{"gsd_mm", histogram_json(map.gsd, 0.0, 2.0 * gsd, 40)},
           {"observations", histogram_json(map.observations, 0.0, 30.0, 30)},

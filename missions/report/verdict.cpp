@@ -67,13 +67,13 @@ void add_coverage(const Json& summary, std::vector<Light>& lights) {
   }
 }
 
-/// Of live surveys: coverage is of what the region of interest is known to hold, and nobody knows
-/// what holds the part that no scan had in view.
+/// Adds the unobserved part of the region of interest. Live surveys only: their estimated coverage
+/// refers to the known surface, and surface in unobserved space is unknown.
 void add_region(const Json& summary, std::vector<Light>& lights) {
   constexpr double much = 0.5;
   const Json predicted = at(summary, "/unseen_box_surface");
   if (!predicted.is_number()) return;
-  lights.push_back({"Surface of planner.scene_box never in view", "unseen_box_surface", "share",
+  lights.push_back({"Unobserved surface of planner.scene_box", "unseen_box_surface", "share",
                     predicted, predicted.get<double>() <= much ? "green" : "amber",
                     fmt::format("green: at most {:.0f}%, otherwise amber", 100.0 * much)});
 }

@@ -31,7 +31,7 @@ sim::StampedPose level_pose(double time, const Vector3d& position, double headin
   return {time, position, Quaterniond(AngleAxisd(heading, Vector3d::UnitZ()))};
 }
 
-/// Returns the pose of the platform at a view. Headings are anticlockwise from east.
+/// Returns the pose of the platform at a view. Headings are counter-clockwise from east.
 sim::StampedPose pose_at(double time, const View& view, Platform platform) {
   if (platform == Platform::airframe) {
     return level_pose(time, view.position, std::atan2(view.direction.y(), view.direction.x()));

@@ -131,7 +131,7 @@ std::map<std::string, Material> read_materials(const std::filesystem::path& file
     if (error != std::errc() || end != text.data() + text.size() ||
         !(value >= 0.0 && value <= 1.0)) {
       fail(entry.line, "material " + entry.key + " is '" + text +
-                           "'; it must be a number from 0 to 1, glass or mirror");
+                           "'; it must be glass, mirror or a number from 0 to 1");
     }
     materials[entry.key] = {value};
   }

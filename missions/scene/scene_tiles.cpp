@@ -111,8 +111,8 @@ class TileEntry {
     const bool is_drawn = is_builtin && sim::is_drawn(std::string_view(model).substr(8));
     if (all_kinds < 0 || (all_kinds != 1 && !is_drawn)) {
       section_.fail_at("kinds",
-                       "applies only to generated builtin models, such as builtin:city-block, as "
-                       "the number of different models (0: all)");
+                       "is the number of different models (0: all) and applies only to generated "
+                       "builtin models, such as builtin:city-block");
     }
     if (seed < 0) section_.fail_at("seed", "must not be negative");
     std::map<std::uint64_t, TileKind> kinds;

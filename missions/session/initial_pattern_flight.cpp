@@ -24,8 +24,8 @@ unsigned circles_round(const AlignedBox3d& box, const StartOptions& start) {
   return static_cast<unsigned>(std::clamp(std::ceil(box.sizes().z() / apart - 1e-9), 1.0, max));
 }
 
-/// Returns anticlockwise orbits with the box on the left: a single orbit that alternates between
-/// two heights, or several level orbits connected by climbs on their last sides.
+/// Returns counter-clockwise orbits with the box on the left: a single orbit that alternates
+/// between two heights, or several level orbits connected by climbs on their last sides.
 std::vector<View> orbit(const StartOptions& start, std::uint64_t seed) {
   const AlignedBox3d box = start.box;
   const double margin = distance_from_box(start);

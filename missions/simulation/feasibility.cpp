@@ -90,7 +90,7 @@ class Inspection {
     const flight::FlightOptions& flight = options_.survey.flight;
     if (min_standoff >= distance_) {
       problem(
-          "{} ({:.4g} m) must be smaller than the view distance ({:.4g} m); lower it or raise "
+          "{0} ({1:.4g} m) must be smaller than the view distance ({2:.4g} m); lower {0} or raise "
           "planner.view_distance",
           flight.has_vehicle() && min_standoff == flight.clearance ? "flight.clearance"
                                                                    : "limits.stand_off",

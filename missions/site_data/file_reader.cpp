@@ -199,7 +199,8 @@ Opened open_file(const fs::path& file, Role role) {
   }
   if (!format) {
     fail_file(file,
-              "has an unsupported format; supported: CityGML, CityJSON, GeoJSON, GPKG, Shapefile, "
+              "has an unsupported format; supported formats: CityGML, CityJSON, GeoJSON, GPKG, "
+              "Shapefile, "
               "KML, KMZ, OSM, DXF, GeoTIFF, ASCII grid, XYZ, LAS, E57, glTF, Collada, FBX, IFC, "
               "PLY, OBJ, STL, OFF, PCD");
   }
@@ -237,13 +238,12 @@ void apply_photogrammetry_offset(const Source& source, FileContents& contents) {
     contents.crs = found->crs;
     contents.vertical = HeightDatum::ellipsoid;
   }
-  contents.notes.push_back(
-      fmt::format("coordinate offset ({:.3f}, {:.3f}, {:.3f}) read from {}{}", found->offset.x(),
-                  found->offset.y(), found->offset.z(), name,
-                  source.crs.empty() ? ", in " + found->crs +
-                                           "; heights are taken as ellipsoid heights unless "
-                                           "vertical is set"
-                                     : ""));
+  contents.notes.push_back(fmt::format(
+      "coordinate offset ({:.3f}, {:.3f}, {:.3f}) read from {}{}", found->offset.x(),
+      found->offset.y(), found->offset.z(), name,
+      source.crs.empty()
+          ? ", in " + found->crs + "; ellipsoidal heights are assumed unless vertical is set"
+          : ""));
 }
 
 FileContents mesh_contents(const Source& source) {

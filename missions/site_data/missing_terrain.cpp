@@ -251,8 +251,8 @@ std::string make_note(const Lattice& lattice, const Gaps& gaps, double plane_z) 
       "outside the terrain files, the ground is assumed to be the plane z = {:.2f} m", plane_z);
   if (holes > 0) {
     note += fmt::format(
-        "; {} holes of {:.0f} m^2 in them are assumed to be as high as the highest ground around "
-        "them",
+        "; {} holes in the terrain files ({:.0f} m^2) are filled to the height of the highest "
+        "ground around them",
         holes, static_cast<double>(cells) * lattice.cell_area());
   }
   return note;

@@ -102,11 +102,10 @@ double ObjectBuilder::compute_height(const FileObject& object) const {
     height = std::max(*height, *object.height);
   }
   if (!height) {
-    throw Error(
-        ErrorKind::bad_config,
-        name + "contains no height of " + one_line(object.id) +
-            "; set height, in metres above its base, or height_attribute (it has the attributes " +
-            attribute_names(object) + ")");
+    throw Error(ErrorKind::bad_config, name + "contains no height of " + one_line(object.id) +
+                                           "; set height to the height above its base in metres, "
+                                           "or set height_attribute (available attributes: " +
+                                           attribute_names(object) + ")");
   }
   return *height;
 }

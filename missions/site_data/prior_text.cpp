@@ -5,17 +5,20 @@
 
 #include <fmt/format.h>
 
+#include "missions/support/number_text.h"
+
 namespace skycap::missions::site_data {
 namespace {
 
-/// Describes the contents: "3 objects of 154 triangles, 20 points".
+/// Describes the contents: "3 objects with 154 triangles, 20 points".
 std::string describe_contents(const Prior& prior) {
   std::string text;
   const auto add = [&](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
   if (!prior.objects.empty()) {
     std::size_t triangles = 0;
     for (const Object& object : prior.objects) triangles += object.mesh.triangles.size();
-    add(fmt::format("{} objects of {} triangles", prior.objects.size(), triangles));
+    add(support::counted(prior.objects.size(), "object") + " with " +
+        support::counted(triangles, "triangle"));
   }
   if (!prior.points.empty()) add(fmt::format("{} points", prior.points.size()));
   if (prior.grid.rows > 0) {

@@ -257,8 +257,8 @@ bool uses_native_heights(Chain& chain, const OperationFinder& finder, const Syst
     if (request.vertical) return false;
     fail("PROJ cannot transform " + result.name + " to WGS84 with full accuracy" +
          (operation.missing.empty() ? "" : ": missing " + operation.missing) +
-         "; install PROJ's grid with projsync (package proj-bin, grids of cdn.proj.org), or set "
-         "vertical: geoid to use EGM96 instead");
+         "; install PROJ's grid with projsync (package proj-bin, grids of cdn.proj.org), or use "
+         "EGM96 instead (key vertical: geoid; skycap site: --vertical geoid)");
   }
   chain.position = std::move(operation.object);
   chain.moves_height = true;

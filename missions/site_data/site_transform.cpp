@@ -77,9 +77,9 @@ SiteTransform::SiteTransform(const Source& source, const FileContents& contents,
 /// Throws if the unit of the file's heights is unknown and the source does not define it.
 void SiteTransform::require_unit(const Source& source, const FileContents& contents) const {
   if (contents.unknown_unit.empty() || source.unit) return;
-  throw Error(ErrorKind::bad_config, file_.string() + ": has heights in the unknown unit '" +
+  throw Error(ErrorKind::bad_config, file_.string() + ": has heights in an unknown unit: '" +
                                          one_line(contents.unknown_unit.substr(0, 40)) +
-                                         "'; set unit, its length in metres");
+                                         "'; set unit to the length of one unit in metres");
 }
 
 void SiteTransform::prepare_pose(const Source& source, const FileContents& contents) {

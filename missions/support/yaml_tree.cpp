@@ -99,7 +99,8 @@ class TreeBuilder final : public YAML::EventHandler {
     reject_tag(mark, tag);
     if (open_.size() == deepest_nesting) {
       fail(line_number(mark),
-           "lists and maps are nested more than 16 levels deep; a mission file requires 3");
+           "lists and maps are nested more than 16 levels deep; a mission file has at most 3 "
+           "levels");
     }
     open_.push_back({node_at(mark, kind), false, {}});
   }

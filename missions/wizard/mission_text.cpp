@@ -52,7 +52,7 @@ const char* describe_purpose(site_data::Role role) {
     case site_data::Role::obstacle:
       return "avoided by every leg, enlarged by its uncertainty; does not mark space as free";
     case site_data::Role::terrain:
-      return "the ground: legs stay above it, the take-off point is on it";
+      return "ground: legs stay above it; the take-off point is on it";
     case site_data::Role::truth:
       break;
   }
@@ -80,7 +80,8 @@ std::string site_section(const MissionValues& values) {
       " # WGS84, north\n  longitude_deg: {:.7f}  # east\n  ellipsoid_height: {:.2f}  # {}\n  # "
       "Views and legs stay inside this "
       "geofence; set the area in which you are allowed to fly.\n  geofence: [[{:g}, {:g}], [{:g}, "
-      "{:g}], [{:g}, {:g}], [{:g}, {:g}]]\n  max_height: {:g}  # z; above the ground here\n",
+      "{:g}], [{:g}, {:g}], [{:g}, {:g}]]\n  max_height: {:g}  # z in the mission frame: maximum "
+      "flight height\n",
       values.origin_is, values.origin.latitude_deg, values.origin.longitude_deg,
       values.origin.height,
       counts_from_takeoff ? "unknown; all heights are relative to the take-off point. Set it "
@@ -105,7 +106,8 @@ std::string flight_section(const MissionValues& values) {
   }
   if (values.photo) {
     return text +
-           "  # A photo camera proves no space free. Outside the prior data, enlarged by their "
+           "  # A photo camera does not measure free space. Outside the prior data, enlarged by "
+           "their "
            "uncertainty and the\n  # clearance, the air is assumed free; the pilot must check it "
            "for trees, wires and cranes.\n  free_space: assumed\n";
   }
@@ -144,9 +146,10 @@ std::string camera_text(const MissionValues& values) {
         std::round(static_cast<double>(width) * camera.camera.height / camera.camera.width));
   }
   if (!is_depth_camera) {
-    text += fmt::format("  width: {}  # pixels{}\n  height: {}  # pixels\n", width,
-                        values.sensor.empty() ? "" : ", fewer than the camera has, to plan faster",
-                        height);
+    text += fmt::format(
+        "  width: {}  # pixels{}\n  height: {}  # pixels\n", width,
+        values.sensor.empty() ? "" : ", reduced from the camera's resolution for faster planning",
+        height);
   }
   text += fmt::format("  max_range: {:g}  # metres\n", sensor_range(values));
   if (!is_depth_camera) {
@@ -170,7 +173,7 @@ std::string photo_head(const MissionValues& values) {
       "# First photo mission, proposed by `{}`. It can be planned unchanged. Values that the files "
       "do not\n# contain are estimates: check every line before you fly. `skycap check` prints "
       "what "
-      "the files contain.\nname: {}  # of the results\n",
+      "the files contain.\nname: {}  # name of the results\n",
       values.command, yaml_quoted(values.file.stem().string()));
 }
 
@@ -198,8 +201,9 @@ std::string planner_section(const MissionValues& values) {
              "  view_distance: {:g}  # metres, distance of views from the surface\n  density: "
              "{:.3g}  # required points per cubic metre\n  resolution_radius: {:g}  # metres, "
              "radius in which points are counted\n  spacing: {:g}  # metres, minimum spacing of "
-             "stored points\nevaluation:\n  coverage_distance: {:g}  # coverage distance: a "
-             "surface within it of a point is covered\nlimits:\n  max_views: 150  # the survey "
+             "stored points\nevaluation:\n  coverage_distance: {:g}  # metres; a surface point "
+             "with a measurement within this distance is covered\nlimits:\n  max_views: 150  # the "
+             "survey "
              "ends earlier when it is complete\n",
              values.view_distance, 0.36 / (distance * distance), 3.0 * distance, 0.5 * distance,
              distance);
@@ -226,7 +230,7 @@ std::string mission_text(const MissionValues& values) {
              "not contain are\n"
              "# estimates: check every line before you fly. `skycap check` prints what the files "
              "contain.\n"
-             "name: {}  # of the results\n"
+             "name: {}  # name of the results\n"
              "# Simulation: {} the ground truth. Remove `scene` for a live survey.\n"
              "scene: {{model: prior, ground: true{}{}}}\n",
              values.command, yaml_quoted(name),

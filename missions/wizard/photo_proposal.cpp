@@ -52,11 +52,12 @@ PhotoValues propose_photos(const std::string& camera, double gsd, const flight::
   if (values.view_distance < values.stand_off) {
     throw Error(
         ErrorKind::bad_config,
-        fmt::format("photo.gsd ({:g} m) requires a view distance of {:.2f} m, less than the "
-                    "stand-off of {:g} m; raise it to {:.1g} m or more, or use a longer lens",
-                    gsd, values.view_distance, values.stand_off,
-                    1e-4 * std::ceil(1e4 * photo_camera.gsd(values.stand_off) /
-                                     (is_coarse ? coarser : 1.0))));
+        fmt::format(
+            "photo.gsd ({:g} m) requires a view distance of {:.2f} m, which is less than the "
+            "stand-off of {:g} m; raise photo.gsd to {:.1g} m or more, or use a longer lens",
+            gsd, values.view_distance, values.stand_off,
+            1e-4 *
+                std::ceil(1e4 * photo_camera.gsd(values.stand_off) / (is_coarse ? coarser : 1.0))));
   }
   return values;
 }

@@ -55,11 +55,11 @@ std::string clicked(const std::vector<Source>& files, const Click& click) {
   if (nearest == nullptr || min > near_click) {
     throw Error(
         ErrorKind::bad_config,
-        fmt::format("{}: contains nothing within {:.0f} m of latitude {:.7f}, longitude {:.7f}{}",
+        fmt::format("{}: contains no object within {:.0f} m of latitude {:.7f}, longitude {:.7f}{}",
                     file, near_click, click.latitude_deg, click.longitude_deg,
-                    nearest == nullptr
-                        ? ""
-                        : fmt::format("; the nearest, {}, is {:.0f} m away", nearest->id, min)));
+                    nearest == nullptr ? ""
+                                       : fmt::format("; the nearest object, {}, is {:.0f} m away",
+                                                     nearest->id, min)));
   }
   require_single(objects, nearest->id, file);
   return nearest->id;

@@ -28,11 +28,11 @@ Trajectory::Trajectory(std::vector<StampedPose> poses) : poses_(std::move(poses)
   for (std::size_t i = 0; i < poses_.size(); ++i) {
     StampedPose& pose = poses_[i];
     require_pose(std::isfinite(pose.time) && pose.attitude.coeffs().allFinite(), i,
-                 "has a value that is not a finite number");
+                 "has a non-finite value");
     geometry::require_valid_position(pose.position, "trajectory pose " + std::to_string(i));
     require_pose(pose.attitude.norm() > 1e-6, i, "has an attitude quaternion of zero length");
     require_pose(i == 0 || pose.time > poses_[i - 1].time, i,
-                 "is not later than the previous pose");
+                 "must be later than the previous pose");
     pose.attitude.normalize();
   }
 }

@@ -24,7 +24,7 @@ std::vector<double> row(double low, double high, double spacing) {
   return positions;
 }
 
-/// Returns the corners of the convex hull, anticlockwise (monotone chain; Andrew, 1979).
+/// Returns the corners of the convex hull, counter-clockwise (monotone chain; Andrew, 1979).
 std::vector<Vector2d> convex_hull(std::vector<Vector2d> points) {
   std::ranges::sort(points, [](const Vector2d& a, const Vector2d& b) {
     return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();

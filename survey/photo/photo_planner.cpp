@@ -98,7 +98,7 @@ class Planner {
     const Observer observer(camera_, rule_, sights_, chosen_on_);
     const Observer evaluator(camera_, rule_, sights_, evaluated_on_);
 
-    report("searching candidate photos");
+    report("searching for candidate photos");
     const PhotoChoiceProblem problem = make_problem(observer);
     find_attainable(problem.candidates, evaluator);
     PhotoChoice choice(problem);
@@ -159,8 +159,8 @@ class Planner {
     throw Error(ErrorKind::bad_geometry,
                 "only " + percent_text(static_cast<double>(exposed) / static_cast<double>(all)) +
                     " of the target's surface is exposed (at least 10% is required): the model is "
-                    "inside out, an interior model, or below the ground; check its units, its "
-                    "position and prior.exclude");
+                    "inside out, an interior model, or below the ground; check the unit and the "
+                    "position of the prior data, and exclude other objects with select");
   }
 
   PatternOptions pattern_options() const {
@@ -200,7 +200,7 @@ class Planner {
       throw Error(ErrorKind::bad_geometry,
                   "no photo observes the target (" + std::to_string(result_.candidates) +
                       " candidates, " + std::to_string(chosen_on_.inner) +
-                      " samples of inner surface); check the model's units and normals, "
+                      " samples on inner surfaces); check the model's units and normals, "
                       "limits.stand_off and flight.free_space");
     }
     return problem;
@@ -335,14 +335,15 @@ class Planner {
                              parts + " photos)";
     if (!is_unknown) {
       result_.warnings.push_back(what +
-                                 "; give the photogrammetry program the photos' poses, or "
-                                 "set photo.poses: unknown, which adds connecting photos");
+                                 "; import the photo poses into the photogrammetry program, or set "
+                                 "photo.poses: unknown, which adds connecting photos");
       return;
     }
-    throw Error(ErrorKind::bad_config,
-                "photo.poses: unknown requires photos that register to one another, but " + what +
-                    ", or a photo registers to fewer than 3 others; raise photo.max_photos or "
-                    "photo.gsd, or set photo.poses: known (RTK or PPK)");
+    throw Error(
+        ErrorKind::bad_config,
+        "photo.poses: unknown requires photos that register to one another, but " + what +
+            ", or a photo can be registered to fewer than 3 others; raise photo.max_photos or "
+            "photo.gsd, or set photo.poses: known (RTK or PPK)");
   }
 
   PhotoFigures evaluated(const std::vector<geometry::View>& views, const Observer& evaluator) {
@@ -520,9 +521,9 @@ PhotoPlanResult plan_photos(const PhotoPlanOptions& options, const PhotoSite& si
   options.validate();
   const double area = surface_area(site.target);
   if (!(area > 0.0) || !std::isfinite(area)) {
-    throw Error(ErrorKind::bad_geometry,
-                "the target has no surface; give a mesh, a city model or an outline with its "
-                "height");
+    throw Error(
+        ErrorKind::bad_geometry,
+        "the target has no surface; specify a mesh, a city model or an outline with a height");
   }
   return Planner(options, site, run).plan();
 }

@@ -38,7 +38,7 @@ void StereoRule::validate() const {
   require(degree * max_parallax >= 1.0 - rounding && degree * max_parallax <= 60.0 + rounding,
           "parallax_deg", degree * max_parallax, "between 1 and 60 degrees");
   require(min_parallax < max_parallax, "parallax_deg", degree * min_parallax,
-          "the lower limit, less than the upper limit; swap the two angles");
+          "less than the maximum parallax; swap the two angles");
 }
 
 StereoPairs::StereoPairs(const StereoRule& rule)

@@ -203,7 +203,7 @@ class OtherPagesTest(unittest.TestCase):
             page.browser.execute_script("window.shown.panel.set_colour('density')")
             self.assertGreater(page.pixels()["colours"], 500)
             page.browser.execute_script("window.shown.panel.show_view(100)")
-            self.assertIn("view 100 of 199", page.all(".now")[0].text)
+            self.assertIn("view 100 (0 to 199)", page.all(".now")[0].text)
             self.assertEqual(page.complaints(), [])
         finally:
             page.close()
@@ -298,7 +298,7 @@ scan: {sensor: %s, frame_period: 1.0, navigation: {horizontal_sigma: 0.2},
                     self.assertEqual(page.get("document.getElementById('colour').value"), mode)
                     self.assertGreater(page.pixels()["colours"], 100, mode)
                 page.browser.execute_script("window.shown.panel.show_view(1)")
-                self.assertIn(" 1 of ", page.all(".now")[0].text)
+                self.assertIn(" 1 (0 to ", page.all(".now")[0].text)
                 self.assertEqual(page.get("window.shown.data.trajectory.believed.points.length"),
                                  page.get("window.shown.data.trajectory.flown.points.length"))
                 self.assertEqual(page.all("img"), [])

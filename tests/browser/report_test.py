@@ -159,7 +159,7 @@ class ReportTest(unittest.TestCase):
             slider.value = %s;
             slider.dispatchEvent(new Event("input"));"""
         page.browser.execute_script(slide % "0")
-        self.assertIn("view 0 of", page.all(".now")[0].text)
+        self.assertIn("view 0 (0 to ", page.all(".now")[0].text)
         button = page.all("#play")[0]
         self.assertEqual(button.text, "replay")
         button.click()
@@ -169,7 +169,7 @@ class ReportTest(unittest.TestCase):
         self.assertEqual(button.text, "replay")
         now = int(page.get("document.getElementById('replay').value"))
         self.assertGreater(now, 0)
-        self.assertIn(f"view {now} of", page.all(".now")[0].text)
+        self.assertIn(f"view {now} (0 to ", page.all(".now")[0].text)
         page.browser.execute_script(slide % "slider.max")
 
     def click_a_view_and_a_point(self):

@@ -182,7 +182,7 @@ class Certificates(unittest.TestCase):
             skycap.certified
 
     def test_refuse_places_that_are_none(self):
-        with self.assertRaisesRegex(skycap.Error, "point 1 of the route is not a finite position"):
+        with self.assertRaisesRegex(skycap.Error, "point 1 of the route has a non-finite position"):
             skycap.verify_route([(0, 0, 0), (np.inf, 0, 0)], 1.0)
 
 

@@ -2,7 +2,7 @@
 
 #include "example.h"
 
-// Interpolates the pose of a platform between two time stamps.
+// Interpolates the pose of a platform between two timestamps.
 const Example trajectory_example("sim/trajectory", [] {
   const skycap::sim::Trajectory path(
       {{.time = 10.0, .position = {0, 0, 20}}, {.time = 14.0, .position = {8, 0, 20}}});

@@ -46,7 +46,7 @@ Compression parse_compression(std::string_view record, int format, std::size_t p
   };
   if (record.size() < items_offset ||
       record.size() < items_offset + item_size * number(item_count_offset)) {
-    throw_bad_file(std::string(damaged) + "it ends too early");
+    throw_bad_file(std::string(damaged) + "it ends prematurely");
   }
   const bool is_layered = format >= 6;
   const int compressor = number(compressor_offset), expected = is_layered ? 3 : 2;

@@ -27,12 +27,12 @@ void require_readable(const std::filesystem::path& path, std::string_view beginn
   const int format = is_compressed ? kind - compressed_bit : kind;
   const bool has_waveforms = format == 4 || format == 5 || format == 9 || format == 10;
   if (major != 1 || minor > 4 || format > 10 || (is_compressed && has_waveforms)) {
-    fail_cloud(
-        path, "is LAS " + std::to_string(major) + "." + std::to_string(minor) +
-                  " with points of format " + std::to_string(format) +
-                  (is_compressed ? ", compressed (LAZ)" : "") +
-                  "; supported are LAS 1.0 to 1.4 with point formats 0 to 10, or 0 to 3 and 6 to 8 "
-                  "if compressed. Convert the file, for example with `pdal translate` or laszip");
+    fail_cloud(path,
+               "is LAS " + std::to_string(major) + "." + std::to_string(minor) +
+                   " with points of format " + std::to_string(format) +
+                   (is_compressed ? ", compressed (LAZ)" : "") +
+                   "; supported: LAS 1.0 to 1.4 with point formats 0 to 10, or 0 to 3 and 6 to 8 "
+                   "if compressed. Convert the file, for example with `pdal translate` or laszip");
   }
   const std::size_t size = minor == 4 ? las::header::end : las::header::old_end;
   if (beginning.size() < size) fail_cloud(path, "ends within the header");

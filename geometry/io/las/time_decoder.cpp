@@ -36,7 +36,7 @@ std::uint64_t TimeDecoder::read(ArithmeticDecoder& decoder) {
       return sequences_[current_].time;
     }
   }
-  throw_bad_file("has damaged compressed points: a time stamp does not belong to any sequence");
+  throw_bad_file("has damaged compressed points: a timestamp does not belong to any sequence");
 }
 
 bool TimeDecoder::read_first_step(ArithmeticDecoder& decoder) {

@@ -302,7 +302,7 @@ void PlyReader::fail_within(const PlyElement& element, std::uint64_t row) const 
 void PlyReader::require_short(const Rows& rows, const PlyTable& table, std::uint64_t values) const {
   if (values <= longest_ply_list) return;
   fail(rows.element.name + " " + std::to_string(rows.begin + table.rows) + " has a list of " +
-       std::to_string(values) + " values; the maximum is 1e6");
+       std::to_string(values) + " values; the maximum is 1 million");
 }
 
 std::int64_t PlyReader::parse_index(const Rows& rows, double value) const {

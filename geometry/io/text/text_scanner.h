@@ -85,7 +85,7 @@ class TextScanner {
     if (has_decimal_comma(word)) {
       fail(quoted + " has a decimal comma; use decimal points");
     }
-    fail(quoted + " is found where " + std::string(what) + " is expected");
+    fail("expected " + std::string(what) + ", found " + quoted);
   }
 
   [[noreturn]] void fail(const std::string& what) const { fail_at(line_, what); }

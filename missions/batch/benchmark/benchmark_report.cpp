@@ -692,7 +692,7 @@ std::string report_markdown(const std::vector<BenchmarkCell>& all, const std::st
     if (!reach.empty())
       text +=
           "\n"
-          "Effort until a coverage is reached. The symbol × precedes the ratio to the complete "
+          "Effort to reach a given coverage. The symbol × precedes the ratio to the complete "
           "survey:\n"
           "\n" +
           reach;
@@ -712,7 +712,7 @@ std::string report_markdown(const std::vector<BenchmarkCell>& all, const std::st
         "\n"
         "## Figure 6\n"
         "\n"
-        "Effort until the target frontier of a view was observed.\n"
+        "Effort until the target frontier of a view is observed.\n"
         "\n" +
         figure_6(cells);
   }

@@ -118,7 +118,8 @@ std::string name_in(const Json& json, const char* field, const std::string& wher
 BenchmarkCell cell_in(const Json& json, const std::string& where) {
   BenchmarkCell cell{name_in(json, "mission", where), name_in(json, "planner", where), {}};
   if (!json.contains("trials") || !json["trials"].is_array() || json["trials"].empty()) {
-    throw Error(ErrorKind::bad_file, where + ": missing trials; expected a list of at least one");
+    throw Error(ErrorKind::bad_file,
+                where + ": missing trials; expected a list with at least one trial");
   }
   for (const Json& trial : json["trials"]) {
     const std::size_t number = cell.trials.size() + 1;

@@ -27,7 +27,8 @@ constexpr std::size_t largest_file = std::size_t{16} << 20;
 constexpr int max_list_size = 100'000;
 
 /// Description of valid names, for messages.
-const std::string plain_names = "use at most 100 bytes without / \\ , \" | and no leading dot";
+const std::string plain_names =
+    "use at most 100 bytes, without / \\ , \" | and without a leading dot";
 
 /// Returns the mission title: the stem of the mission file.
 std::string mission_title(const std::string& path) { return fs::path(path).stem().string(); }

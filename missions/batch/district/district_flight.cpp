@@ -276,7 +276,7 @@ SurveyFigures compute_figures(const fs::path& folder, const TrialRecord& record)
     }
     return figures;
   } catch (const nlohmann::json::exception& error) {
-    throw Error(ErrorKind::bad_file, file.string() + ": is not a survey's summary (" +
+    throw Error(ErrorKind::bad_file, file.string() + ": is not the summary of a survey (" +
                                          error.what() +
                                          "); remove its folder and run the command again");
   }

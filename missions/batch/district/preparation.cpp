@@ -169,8 +169,8 @@ void PadChoice::read_configured_pads(const DistrictFile& district,
     const auto pad = search_.at(position.head<2>());
     if (!pad || search_.climb_clearance(*pad, top, 1.0) <= 0.0) {
       throw Error(ErrorKind::bad_config,
-                  fmt::format("{}: key pads: {:.7f},{:.7f} is not free, level and even ground "
-                              "outside the surveyed objects; use another position",
+                  fmt::format("{}: key pads: the position {:.7f},{:.7f} must be on free, level and "
+                              "even ground outside the surveyed objects; use another position",
                               district.file.string(), click.latitude_deg, click.longitude_deg));
     }
     configured_pads_.push_back(*pad);

@@ -26,13 +26,13 @@ namespace mavlink = flight::mavlink;
 constexpr std::uint16_t set_mode = 176, arm = 400;
 constexpr std::uint32_t guided_mode = 4, land_mode = 9;
 
-constexpr double period = 0.1;  ///< Interval between set points [s].
+constexpr double period = 0.1;  ///< Interval between setpoints [s].
 /// Time limit for coming to rest and aiming, in addition to the leg time [s].
 constexpr double settle_patience = 20.0;
 constexpr double mode_patience = 5.0;  ///< [s]
 
-/// Maximum delay between two set points before the vehicle is stopped [s]. Up to this delay, the
-/// vehicle has flown as far as the missing set points would have led it.
+/// Maximum delay between two setpoints before the vehicle is stopped [s]. Up to this delay, the
+/// vehicle has flown as far as the missing setpoints would have led it.
 constexpr double longest_stall = 1.0;
 
 double turn_between(double a, double b) {
@@ -190,7 +190,7 @@ MaybeFailure GuidedFlight::fly_leg(const Vector3d& to) {
       listen();  // Processes messages received during the stall.
       failure =
           FlightFailure{FailureKind::stalled,
-                        fmt::format("set points were interrupted for {:.1f} s because this program "
+                        fmt::format("setpoints were interrupted for {:.1f} s because this program "
                                     "was suspended; stopping at the current position",
                                     late)};
     } else {
@@ -332,7 +332,7 @@ MaybeFailure GuidedFlight::land(const Vector3d& pad) {
   return std::nullopt;
 }
 
-/// Sends a set point from which the vehicle would stop before the end of the leg without further
+/// Sends a setpoint from which the vehicle would stop before the end of the leg without further
 /// messages.
 flight::SetPoint GuidedFlight::send_on(const flight::ScriptedLeg& leg,
                                        const flight::SetPoint& point) {

@@ -1,13 +1,13 @@
 /// Flies an ArduCopter in GUIDED mode along given legs and monitors it for failures.
 ///
-/// Between two stops, position and velocity set points follow the straight leg at 10 Hz, within the
+/// Between two stops, position and velocity setpoints follow the straight leg at 10 Hz, within the
 /// vehicle's dynamics. With position targets alone, ArduCopter would climb and descend at its own
-/// rate and leave the line. When set points stop arriving, ArduCopter continues with the last
+/// rate and leave the line. When setpoints stop arriving, ArduCopter continues with the last
 /// velocity for three seconds (GUID_TIMEOUT). The commanded velocity is therefore limited so that
-/// the vehicle stops before the end of the leg. All set points are on the current leg.
+/// the vehicle stops before the end of the leg. All setpoints are on the current leg.
 ///
 /// To abandon a leg, the vehicle brakes along it. The leg remains the current leg until the vehicle
-/// is at rest, because the vehicle lags behind its set points and overshoots the last one. If this
+/// is at rest, because the vehicle lags behind its setpoints and overshoots the last one. If this
 /// program stalls for more than one second, the vehicle stops at the position that it has reached
 /// meanwhile.
 ///

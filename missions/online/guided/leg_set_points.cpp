@@ -11,7 +11,7 @@ using Eigen::Vector3d;
 /// Time for which ArduCopter continues with the last velocity (GUID_TIMEOUT) [s].
 constexpr double set_point_life = 3.0;
 constexpr double reaction = 1.0;     ///< Delay until the vehicle starts to brake [s].
-constexpr double min_advance = 0.2;  ///< Two set point intervals [s].
+constexpr double min_advance = 0.2;  ///< Two setpoint intervals [s].
 
 }  // namespace
 

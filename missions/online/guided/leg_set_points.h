@@ -1,4 +1,4 @@
-/// Set points on a straight leg for an autopilot that continues with the last velocity received.
+/// Setpoints on a straight leg for an autopilot that continues with the last velocity received.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,10 +9,10 @@
 namespace skycap::missions::online {
 
 /// Returns `point` with its velocity limited so that the vehicle stops before the end of the leg
-/// even if no further set point arrives.
+/// even if no further setpoint arrives.
 flight::SetPoint with_stopping_speed(const flight::ScriptedLeg& leg, flight::SetPoint point);
 
-/// Returns the leg time of the next set point [s]. The last set point, `sent`, had leg time `time`
+/// Returns the leg time of the next setpoint [s]. The last setpoint, `sent`, had leg time `time`
 /// and was sent `late` seconds ago. The result is at or beyond the position reached with the
 /// velocity of `sent`, so that the vehicle never flies backwards.
 double time_after(const flight::ScriptedLeg& leg, double jerk, double time,

@@ -57,7 +57,7 @@ MaybeFailure LiveFlight::begin() {
   const auto over = survey_.flight()->find_path(here_, above_pad_);
   if (!climb || climb->points.size() > 2 || !over) {
     return FlightFailure{FailureKind::rejected,
-                         "the climb from the vehicle's position is not verified as free"};
+                         "the climb from the vehicle's position is not verified to be free"};
   }
   home_ = over->points;
   if (survey_.proposal().view) {

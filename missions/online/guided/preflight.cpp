@@ -52,8 +52,8 @@ MaybeFailure check_kind(const mavlink::HeardHeartbeat& heard) {
   const bool is_copter = std::ranges::find(multicopters, heard.type) != multicopters.end();
   if (heard.autopilot == ardupilot && is_copter) return std::nullopt;
   return rejected(
-      fmt::format("unsupported vehicle: the autopilot is number {} and the type {}; only "
-                  "ArduCopter is supported (autopilot 3, a multicopter type)",
+      fmt::format("unsupported vehicle: MAV_AUTOPILOT {}, MAV_TYPE {}; only ArduCopter is "
+                  "supported (MAV_AUTOPILOT 3 and a multicopter type)",
                   heard.autopilot, heard.type));
 }
 
@@ -85,7 +85,7 @@ MaybeFailure wait_for_position(mavlink::AutopilotLink& link, double patience,
                           : !state.yaw()      ? "its heading (ATTITUDE)"
                                               : "its battery level (SYS_STATUS)";
     return rejected(
-        fmt::format("timeout: for {:.0f} s the vehicle did not report {}", patience, missing));
+        fmt::format("timeout: the vehicle did not report {1} for {0:.0f} s", patience, missing));
   };
   return wait_until(link, patience, stop, is_complete, late);
 }
@@ -93,7 +93,9 @@ MaybeFailure wait_for_position(mavlink::AutopilotLink& link, double patience,
 MaybeFailure check_pad(const mavlink::VehicleState& state, const FlightFrame& frame,
                        const Vector3d& pad, const GuidedLimits& limits) {
   if (state.heartbeat()->is_armed) {
-    return rejected("the vehicle is armed; a flight begins at the take-off point, disarmed");
+    return rejected(
+        "the vehicle is armed; a flight must begin at the take-off point, with the vehicle "
+        "disarmed");
   }
   const Vector3d off = to_position(state, frame) - pad;
   const double horizontal = off.head<2>().norm();
@@ -106,15 +108,15 @@ MaybeFailure check_pad(const mavlink::VehicleState& state, const FlightFrame& fr
                   horizontal, off.z(), pad.x(), pad.y(), pad.z()));
 }
 
-/// Set points come ten a second: a vehicle that stops after less than half a second without one
+/// Setpoints come ten a second: a vehicle that stops after less than half a second without one
 /// would stop all the time; one that flies on for long leaves its leg when the link fails.
 MaybeFailure check_timeout(mavlink::AutopilotLink& link) {
   constexpr double shortest = 0.5, longest = 5.0;  // [s]
   const std::optional<double> timeout = link.parameter("GUID_TIMEOUT");
   if (!timeout || (*timeout >= shortest && *timeout <= longest)) return std::nullopt;
   return rejected(
-      fmt::format("parameter GUID_TIMEOUT must be from {:g} to {:g} s; it is {:g} s; set "
-                  "it to 3 and repeat the command",
+      fmt::format("parameter GUID_TIMEOUT must be from {:g} to {:g} s, but is {:g} s; set it to 3 "
+                  "and repeat the command",
                   shortest, longest, *timeout));
 }
 

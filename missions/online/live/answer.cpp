@@ -77,7 +77,7 @@ std::string pose_text(const PoseFinding& pose) {
                                          100.0 * pose.seen_through);
     return "; warning: scan rejected: pose inconsistent with the map (" +
            (pose.is_checked ? "best fit " + motion_text(pose) + ", " + seen : seen) +
-           "). Hold position, correct the pose, scan again";
+           "). Hold position, correct the pose and scan again";
   }
   if (pose.correction) return "; pose " + motion_text(pose);
   return "";
@@ -93,7 +93,7 @@ std::string region_text(const BoxSight& visibility) {
   }
   const std::optional<double> predicted = visibility.unseen_share();
   if (predicted && *predicted >= worth_a_word) {
-    text += fmt::format("; {:.0f}% of the surface of planner.scene_box was never in view",
+    text += fmt::format("; {:.0f}% of the surface of planner.scene_box has not been observed",
                         100.0 * *predicted);
   }
   return text;
@@ -145,7 +145,8 @@ std::string answer_text(const LiveSurvey& survey) {
   if (proposal.end) {
     return std::string(state_name(proposal)) + " after " + scans + region_text(survey.visibility());
   }
-  if (!proposal.view) return "take the first scan from any position that sees the scene";
+  if (!proposal.view)
+    return "take the first scan from any position from which the scene is visible";
   const Vector3d& at = proposal.view->position;
   std::string text = fmt::format(
       "view {}: {:.3f} {:.3f} {:.3f}, heading {:.1f} deg, pitch {:.1f} deg", proposal.number,

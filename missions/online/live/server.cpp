@@ -218,7 +218,7 @@ void Server::run(Session& session, const std::function<void(const std::string&)>
       Handle visitor(::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC));
       if (visitor.is_open() && client) {
         dismiss(visitor.get(), error_message("server busy: another client is connected"));
-        note("a second client was refused");
+        note("a second client was rejected");
       } else if (visitor.is_open()) {
         client.emplace(std::move(visitor));
         note("client connected");

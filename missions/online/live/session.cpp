@@ -123,7 +123,7 @@ ScanFound depth_scan(const Message& message, const flight::CaptureOptions& captu
     reject_message("scan: width and height must be from 1 to 32768");
   }
   if (std::uint64_t{width} * height > geometry::max_depth_pixels) {
-    reject_message("scan: the image has more than 2.5e7 pixels");
+    reject_message("scan: the image has more than 25 million pixels");
   }
   geometry::DepthImage image{static_cast<int>(width), static_cast<int>(height), {}};
   const std::size_t count = std::size_t{width} * height;
@@ -175,7 +175,7 @@ Message Session::answer_unguarded(const Message& message) {
   if (type == "scan") return add_scan(message);
   if (type == "refuse") return reject(message);
   if (type == "finish") {
-    if (survey_.views().empty()) reject_message("finish: no scan yet");
+    if (survey_.views().empty()) reject_message("finish: no scan has been accepted yet");
     Message answer{{{"type", "finished"}, {"text", finish_()}}, {}};
     is_finished_ = true;
     return answer;

@@ -41,7 +41,7 @@ std::optional<Message> FrameReader::next() {
   std::memcpy(lengths.data(), buffer_.data(), sizeof lengths);
   const auto [header_size, payload_size, checksum] = lengths;
   require(header_size <= largest_header && payload_size <= largest_payload,
-          "is larger than allowed (64 KiB of header, 256 MiB of payload)");
+          "is too large (maximum: 64 KiB of header, 256 MiB of payload)");
   const std::size_t size = std::size_t{header_size} + payload_size;
   if (buffer_.size() - sizeof lengths < size) return std::nullopt;
   const std::string_view body = std::string_view(buffer_).substr(sizeof lengths, size);

@@ -55,8 +55,7 @@ std::string find_defect(const mrpt::img::TCamera& camera) {
   const bool is_known = std::ranges::all_of(known, [](double k) { return std::isfinite(k); }) &&
                         std::ranges::all_of(others, [](double k) { return k == 0.0; });
   return is_known ? ""
-                  : "distortion coefficients other than k1 k2 p1 p2 k3, or coefficients that are "
-                    "not finite";
+                  : "distortion coefficients other than k1 k2 p1 p2 k3, or non-finite coefficients";
 }
 
 /// Returns true if the name is within the folder of the rawlog's images. Other paths on this
@@ -86,7 +85,7 @@ bool is_too_much(std::ptrdiff_t count) { return count > geometry::max_depth_pixe
 void put_points(RawlogScan& scan, std::span<const float> x, std::span<const float> y,
                 std::span<const float> z) {
   if (is_too_much(std::ssize(x))) {
-    scan.fault = "more than 2.5e7 points";
+    scan.fault = "more than 25 million points";
   } else {
     scan.content = in_optical(x, y, z);
   }
@@ -117,7 +116,7 @@ RawlogScan range_scan(const mrpt::obs::CObservation3DRangeScan& observation) {
     if (scan.fault.empty()) scan.fault = find_defect(observation.cameraParams);
     const double unit = observation.rangeUnits;
     if (!(unit >= 1e-6 && unit <= 1.0)) scan.fault = "the depth unit must be from 1e-6 to 1 m";
-    if (is_too_much(observation.rangeImage.size())) scan.fault = "more than 2.5e7 pixels";
+    if (is_too_much(observation.rangeImage.size())) scan.fault = "more than 25 million pixels";
     if (scan.fault.empty()) scan.content = make_image(observation);
     return scan;
   }

@@ -39,7 +39,7 @@ Eigen::Isometry3d pose_at(std::span<const Stamped> poses, double time, const std
 template <typename Item>
 const Item& nearest_pose(std::span<const Item> items, double time, const std::string& what) {
   constexpr double max_time_difference = 0.02;  // [s]
-  const std::string error_message = what + ": no pose within 20 ms of its time stamp";
+  const std::string error_message = what + ": no pose within 20 ms of its timestamp";
   if (items.empty()) throw Error(ErrorKind::bad_file, error_message);
   auto near = std::ranges::lower_bound(items, time, {}, &Item::time);
   const bool is_last = near == items.end();

@@ -45,7 +45,8 @@ class RowReader {
     }
     row.start = number(fields[4], "start_s");
     row.landing = number(fields[5], "landing_s");
-    if (row.start < 0.0 || row.landing <= row.start) fail("the landing must be after the start");
+    if (row.start < 0.0 || row.landing <= row.start)
+      fail("the landing time must be after the start time");
     for (int axis = 0; axis < 3; ++axis) row.pad[axis] = number(fields[6 + axis], "pad");
     geometry::require_valid_position(row.pad, location_ + "pad");
     return row;

@@ -123,8 +123,8 @@ function survey_charts(data) {
   const charts = [
     is_known ? coverage_chart(data, "Coverage vs. views", (view, i) => i + 1, "views") : null,
     is_known ? coverage_chart(data, "Coverage vs. path length", (view) => view.distance_m, "path length in metres (straight lines)") : null,
-    chart("Points", null, "line", [line("points kept", views.map((view, i) => [i + 1, view.points])),
-      line("new in the view", views.map((view, i) => [i + 1, view.points_new]), 1)], { x: "views", y: "points" }),
+    chart("Points", null, "line", [line("stored points", views.map((view, i) => [i + 1, view.points])),
+      line("new points", views.map((view, i) => [i + 1, view.points_new]), 1)], { x: "views", y: "points" }),
     chart("Planning time", "Planning time per view on this machine.", "line",
       [line("planning", views.map((view, i) => [i + 1, view.planning_time_s]))], { x: "views", y: "s" }),
     clearance_chart(data), energy_chart(data), reliability_chart(data)];

@@ -171,7 +171,7 @@ function reach_table(data, cells) {
     }));
   if (!rows.length) return [];
   const number = (content) => ({ number: content });
-  return [element("h3", {}, "Effort until a given coverage is reached"), table(["coverage of", "planner", number("trials that reach it"),
+  return [element("h3", {}, "Effort to reach a given coverage"), table(["coverage of", "planner", number("trials that reach it"),
     number("views"), number("distance"), number("planning")], rows)];
 }
 

@@ -23,7 +23,8 @@ const forms = {
   clock: (value) => value.toFixed(1) + " s",
   watt_hours: (value) => value.toFixed(1) + " Wh",
   degrees: (value) => value.toFixed(1) + "°",
-  place: (value) => value.toFixed(7) + "°",
+  latitude: (value) => Math.abs(value).toFixed(7) + (value < 0 ? "° S" : "° N"),
+  longitude: (value) => Math.abs(value).toFixed(7) + (value < 0 ? "° W" : "° E"),
   bytes: (value) =>
     value < 1e6 ? (value / 1e3).toFixed(1) + " kB" : grouped((value / 1e6).toFixed(1)) + " MB",
 };

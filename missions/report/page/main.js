@@ -20,7 +20,7 @@ function facts_of(data) {
   const add = (text) => { if (text) facts.push(element("span", {}, text)); };
   add(settings["scene.model"]);
   if (settings["site.latitude_deg"] !== undefined && settings["site.longitude_deg"] !== undefined) {
-    add(shown(settings["site.latitude_deg"], "place") + " N, " + shown(settings["site.longitude_deg"], "place") + " E");
+    add(shown(settings["site.latitude_deg"], "latitude") + ", " + shown(settings["site.longitude_deg"], "longitude"));
   }
   add(settings["flight.vehicle"] && settings["flight.vehicle"] !== "none" ? "vehicle " + settings["flight.vehicle"] : "no vehicle");
   const image = settings["sensor.width"] ? ", " + settings["sensor.width"] + " × " + settings["sensor.height"] + " pixels" : "";
@@ -122,7 +122,8 @@ async function show() {
   return skycap;
 }
 
-/// `window.skycap` is a promise of all displayed objects, for scripts that control the page.
+/// Sets `window.skycap` for scripts that control the page: a Promise that resolves to the displayed
+/// objects.
 function main() {
   window.skycap = show().catch((failure) => {
     document.getElementById("main").append(element("p", { class: "notice" }, "Cannot show the page: " + failure.message));

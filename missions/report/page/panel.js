@@ -79,7 +79,7 @@ class Panel {
   say_view(number) {
     const views = views_of(this.data);
     if (this.data.pieces) {
-      this.now.textContent = this.data.piece + " " + number + " of " + (views.length - 1) + " · " +
+      this.now.textContent = this.data.piece + " " + number + " (0 to " + (views.length - 1) + ") · " +
         shown(views[number].time_s - views[0].time_s, "clock");
       return;
     }
@@ -87,7 +87,7 @@ class Panel {
     const attainable = typeof ceiling === "number" ? " of " + shown(ceiling, "share") + " attainable" : "";
     const covered = typeof views[number].coverage === "number" ? " · covered " +
       shown(views[number].coverage, "share") + attainable : "";  // unknown for real sites
-    this.now.textContent = "view " + number + " of " + (views.length - 1) + covered;
+    this.now.textContent = "view " + number + " (0 to " + (views.length - 1) + ")" + covered;
   }
 
   show_view(number) {

@@ -9,9 +9,9 @@ const photo_classes = [
 const missing_words = {
   occluded: "occluded from most free positions",
   stand_off: "too close to obstacles or outside the airspace",
-  incidence: "seen only above the maximum incidence",
+  incidence: "visible only at more than the maximum incidence",
   gimbal: "outside the gimbal's range",
-  height: "seen only from below the minimum height",
+  height: "visible only from below the minimum height",
   not_taken: "attainable, but requires too many photos for its area",
 };
 
@@ -63,10 +63,10 @@ function camera_section(data) {
   return element("section", { id: "camera" }, element("h2", {}, "Camera and storage"),
     table(["Setting", number("Value")], [
       ["Ground sampling distance", f("gsd_m", "millimetres")], ["View distance", f("view_distance_m", "metres")],
-      ["Exposure time, at most", f("capture.exposure_s", "seconds")],
-      ["Time between photos, at least", f("capture.min_interval_s", "seconds")],
+      ["Maximum exposure time", f("capture.exposure_s", "seconds")],
+      ["Minimum time between photos", f("capture.min_interval_s", "seconds")],
       ["Speed with a motion blur of half a pixel", number(shown(photo.capture.blur_speed_m_s, "metres") + "/s")],
-      ["Storage of JPEG photos, estimated", f("capture.storage_bytes", "bytes")]]),
+      ["Storage for JPEG photos (estimate)", f("capture.storage_bytes", "bytes")]]),
     element("p", {}, photo.capture.trigger));
 }
 
@@ -82,10 +82,10 @@ function photo_charts(data) {
       [line("expected completeness", curve)], { x: "photos", ...y }),
     minutes.length > 1 ? chart("Expected completeness vs. minutes", "Tour through the first photos with a stop at each, without the legs from and to the take-off point.",
       "line", [line("expected completeness", minutes)], { x: "minutes", ...y }) : null,
-    histogram_chart("Ground sampling distance", "Smallest of the photos of a point, head-on.", millimetres, "mm", 0),
+    histogram_chart("Ground sampling distance", "Minimum among the photos of a point, on a surface that faces the camera.", millimetres, "mm", 0),
     histogram_chart("Photos of a point", null, histograms.observations, "photos", 1),
-    histogram_chart("Parallax", "Largest parallax of a pair of stereo partners.", histograms.parallax_deg, "degrees", 2),
-    histogram_chart("Incidence", "Smallest angle of incidence of the photos of a point.", histograms.incidence_deg, "degrees", 3),
+    histogram_chart("Parallax", "Maximum parallax between two stereo partners of a point.", histograms.parallax_deg, "degrees", 2),
+    histogram_chart("Incidence", "Minimum angle of incidence among the photos of a point.", histograms.incidence_deg, "degrees", 3),
     clearance_chart(data), energy_chart(data)));
 }
 
@@ -93,9 +93,9 @@ const how_photographed = [
   ["Expected completeness", "Expected fraction of the exposed surface at which a photogrammetry program finds a depth within two ground sampling distances. It follows from the number of stereo partners and was fitted to simulated reconstructions."],
   ["Exposed surface", "Surface from which at least 10% of the directions are free. The rest, such as the inside of walls, is not counted."],
   ["Attainable surface", "Exposed surface with enough stereo partners if all candidate photos are taken."],
-  ["Stereo partners", "Largest number of photos of a point with the permitted parallax to one of its photos. Their distances differ by at most a factor of two."],
+  ["Stereo partners", "Photos of the same point whose parallax is within the permitted range and whose distances differ by at most a factor of two. The number is the maximum for any photo of the point."],
   ["Good, weak, missing", "Good: at least three stereo partners or a reconstructability of at least 1. Weak: two partners or at least 0.2. Missing: all other exposed surface."],
-  ["Ground sampling distance", "Distance of neighbouring pixels on a surface that faces the camera."],
+  ["Ground sampling distance", "Distance between neighbouring pixels on a surface that faces the camera."],
 ];
 
 function photo_sections(data) {

@@ -56,5 +56,5 @@ const how_scanned = [
   ["Incidence", "Angle between the local surface normal at a point (plane through its neighbours) and the direction to the sensor at the middle of its flight segment."],
   ["Range", "Distance from a point to the sensor at the middle of its flight segment."],
   ["Speed", "Computed from consecutive poses of the trajectory. The page contains an evenly distributed subset of them."],
-  ["Density", "Number of neighbours of a preview point within " + density_reach + " times the typical point spacing. This number is divided by the disc's area and by the fraction of points shown on the page. skycap evaluate --density counts all points."],
+  ["Density", "Number of neighbours of a preview point within " + density_reach + " times the typical point spacing. It is divided by the area of a disc with this radius and by the fraction of displayed points. skycap evaluate --density counts all points."],
 ];

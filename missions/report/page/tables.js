@@ -50,7 +50,7 @@ function written_parts(data) {
       : part.files.join(", "))), gaps));
   });
   return [element("h3", {}, "Coverage of the route files"),
-    element("p", {}, "Coverage of each route file as read back, in a simulated re-flight from an empty cloud."),
+    element("p", {}, "Each route file is read back and re-flown in simulation, starting from an empty cloud. The table lists the resulting coverage."),
     table(["", number("Views"), number("Coverage"), number("Coverage of visible surface")], rows), ...parts];
 }
 
@@ -65,7 +65,7 @@ function holes_section(data, on_pick) {
   const shown_holes = holes.slice(0, most_holes)
     .filter((hole, i) => i < fewest_holes || hole.area_m2 >= least_hole * total);
   const has_places = data.hole_places.length > 0;
-  const place = (i) => data.hole_places[i].slice(0, 2).map((degrees) => shown(degrees, "place")).join(", ") +
+  const place = (i) => data.hole_places[i].slice(0, 2).map((degrees, k) => shown(degrees, k ? "longitude" : "latitude")).join(", ") +
     ", " + shown(data.hole_places[i][2], "metres");
   const rows = shown_holes.map((hole, i) => [
     element("span", {}, swatch(reason_colour[hole.reason]), reason_text[hole.reason]),
@@ -200,7 +200,7 @@ function flight_section(data) {
     ". Minimum clearance ", f("route.min_clearance_m", "metres"), ", verified for every leg (required ",
     f("clearance_m.total", "metres"), ")."), surveyed_part(data));
   section.append(table(["Sortie", "Views", number("Length"), number("Time"), number("Energy"),
-    number("Left above reserve"), number("Minimum clearance")], sorties_of(data).map((sortie, i) => {
+    number("Energy above reserve"), number("Minimum clearance")], sorties_of(data).map((sortie, i) => {
     const path = "route.sorties." + i + ".";
     return [String(i + 1), sortie.first_station + " to " + sortie.last_station,
       number(f(path + "length_m", "metres")), number(f(path + "duration_s", "minutes")),
@@ -273,11 +273,11 @@ const how_surveyed = [
   ["Coverage (ground truth)", "Fraction of samples, evenly distributed over the surface of the simulated model, that have a measurement within the coverage distance. It is not used by the planner. Visible surface: samples that a sensor can see from an admissible view."],
   ["Uncovered surface", "Surface patches that are more likely uncovered than covered, grouped by neighbourhood and reason. The area of a gap is the uncovered part of its patches. Scattered gaps are the predicted uncovered part of covered surface. The total is the surface area times (1 - coverage)."],
   ["Verified clearance", "Lower bound of the distance from the vehicle centre to any measured point, no-fly volume or unknown space, over the whole leg."],
-  ["Times and energy", "Estimates from the vehicle file, including stops, turns and hovering, at the wind and battery temperature of the mission."],
+  ["Times and energy", "Estimates from the vehicle file, including stops, turns and hovering, for the wind and battery temperature of the mission."],
   ["Predicted error", "Standard error of the mean if all points within the coverage distance are averaged, for a sample of the points. It uses the noise estimated by the planner, otherwise sensor.noise; noise along a ray is multiplied by the cosine of the incidence. Correlated errors, such as a wrong sensor position, are not included."],
   ["Incidence and range", "Computed from the normal of each point (plane through its neighbours) and the sensor position of its scan."],
   ["Free-space boundary", "Faces between free voxels and unknown or occupied voxels; an evenly distributed subset if there are many. The route is verified to keep its clearance from all of them."],
-  ["Density", "Number of neighbours within " + density_reach + " times the typical point spacing, divided by the area of that disc. Scaled up if the page shows a subset of the points."],
+  ["Density", "Number of neighbours within " + density_reach + " times the typical point spacing, divided by the area of a disc with this radius. Scaled up if the page shows a subset of the points."],
 ];
 
 const how_compared = [

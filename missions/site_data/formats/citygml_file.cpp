@@ -279,7 +279,7 @@ void Walker::read_ring(pugi::xml_node boundary, int dimension) {
   }
   if (numbers_.empty()) ++rings_without_position_;
   if (contents_.corners.size() + numbers_.size() / width > max_corners) {
-    fail_file(file_, "has more than 1e9 corners");
+    fail_file(file_, "has more than 1 billion corners");
   }
   for (std::size_t i = 0; i < numbers_.size(); i += width) {
     contents_.corners.emplace_back(numbers_[i], numbers_[i + 1], numbers_[i + 2]);

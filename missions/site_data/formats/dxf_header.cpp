@@ -106,8 +106,8 @@ void apply_dxf_unit(const std::filesystem::path& file, string_view text, bool ha
   }
   const auto unit = std::ranges::find(units, *header.unit, &Unit::number);
   if (unit == units.end()) {
-    fail_file(file, "has the unknown unit $INSUNITS " + std::to_string(*header.unit) +
-                        "; set unit, its length in metres");
+    fail_file(file, "has an unknown unit: $INSUNITS " + std::to_string(*header.unit) +
+                        "; set unit to the length of one unit in metres");
   }
   contents.unit = unit->metres;
   contents.notes.push_back(std::string("linear unit: ") + unit->name + " ($INSUNITS)");

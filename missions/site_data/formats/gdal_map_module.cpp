@@ -244,9 +244,9 @@ void MapReader::leave_out(const FileObject& object) { ++(is_cable(object) ? cabl
 
 void MapReader::add_corner(double x, double y, double z) {
   const Eigen::Vector3d corner(x, y, z);
-  if (!corner.allFinite()) fail_file(file_, "has a corner that is not finite");
+  if (!corner.allFinite()) fail_file(file_, "has a corner with a non-finite coordinate");
   if (contents_.corners.size() == max_corners) {
-    fail_file(file_, "has more than 1e9 corners");
+    fail_file(file_, "has more than 1 billion corners");
   }
   contents_.corners.push_back(corner);
 }

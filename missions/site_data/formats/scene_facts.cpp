@@ -255,9 +255,9 @@ SceneFacts ifc_facts(const std::filesystem::path& file, string_view text, bool h
   const Entities entities(text);
   const std::optional<LengthUnit> unit = length_unit(entities);
   if (!has_unit && (!unit || (!unit->is_si && !unit->metres))) {
-    fail_file(file, (unit ? "has the unknown linear unit '" + unit->name + "'"
+    fail_file(file, (unit ? "has an unknown linear unit: '" + unit->name + "'"
                           : std::string("has no linear unit")) +
-                        "; set unit, its length in metres");
+                        "; set unit to the length of one unit in metres");
   }
   if (unit && !unit->is_si && unit->metres) {
     facts.unit = unit->metres;

@@ -132,7 +132,7 @@ void SceneReader::add_mesh(const aiMesh& mesh, const Eigen::Affine3d& world_from
     const aiVector3D& vertex = mesh.mVertices[i];
     object.mesh.vertices.push_back(world_from_node * Eigen::Vector3d(vertex.x, vertex.y, vertex.z));
     if (!object.mesh.vertices.back().allFinite()) {
-      fail_file(file_, "has a vertex that is not finite in " + object.id);
+      fail_file(file_, "has a non-finite vertex in " + object.id);
     }
   }
   const bool is_mirrored = world_from_node.linear().determinant() < 0.0;

@@ -122,11 +122,11 @@ TEST_F(Ros2Bridge, WarnsAboutPoseGapsDuringSettling) {
   for (const double time : times) transforms(time, {{"map", "base_link", {5, 0, -0.5}}});
   cloud(9.72);
   proceed();
-  EXPECT_THAT(warnings_.back(), HasSubstr("of 'base_link': nothing within 0.1 s"));
+  EXPECT_THAT(warnings_.back(), HasSubstr("frame 'base_link': no pose within 0.1 s"));
   EXPECT_THAT(scans_, IsEmpty());
 }
 
-/// A moving arm must not refresh the time stamp of the body transform.
+/// A moving arm must not refresh the timestamp of the body transform.
 TEST_F(Ros2Bridge, StampsGoalsWithTimeOfBodyTransforms) {
   begin_with_transforms();
   cloud(8.0);
@@ -173,7 +173,7 @@ TEST_F(Ros2Bridge, HoldsScansForOdometryUntilTimeout) {
   EXPECT_NEAR(poses_[0][3], 1.0 + 0.75 * 2 / 3, 1e-9);
   cloud(11.0);
   proceed(0.6);
-  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("its pose is unknown: nothing within 0.1 s")));
+  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("its pose is unknown: no pose within 0.1 s")));
   EXPECT_THAT(poses_, SizeIs(1));
 }
 
@@ -187,8 +187,8 @@ TEST_F(Ros2Bridge, KeepsInvalidMessagesOutOfSurvey) {
   now_ += 10.0;
   arrive();
   odometry(2e9, {700, 0, 0});  // from the future
-  odometry(10.0, {9, 9, 9});   // a different pose with the time stamp 10.0
-  EXPECT_THAT(warnings_.back(), HasSubstr("a different pose has the same stamp"));
+  odometry(10.0, {9, 9, 9});   // a different pose with the timestamp 10.0
+  EXPECT_THAT(warnings_.back(), HasSubstr("two different poses have the same timestamp"));
   now_ += 10.0;
   {
     SampleOdometry other(seconds(10.01), {8, 8, 8});
@@ -219,7 +219,7 @@ TEST_F(Ros2Bridge, KeepsInvalidMessagesOutOfSurvey) {
   SampleCloud stampless(0, {{1, 2, 3}});
   now_ += 10.0;
   bridge_->receive(stampless.message, now_);
-  EXPECT_THAT(warnings_.back(), HasSubstr("its stamp is not set"));
+  EXPECT_THAT(warnings_.back(), HasSubstr("its timestamp is not set"));
   EXPECT_THAT(poses_, SizeIs(1));
   cloud(10.5);  // valid again
   proceed();

@@ -179,7 +179,7 @@ TEST(PoseHistory, KeepsFirstPoseOfEqualStamps) {
   EXPECT_EQ(history.at(seconds(1.0)).pose.position.x(), 1.0);
 }
 
-/// The oldest received pose is discarded first, even if its time stamp is far in the future.
+/// The oldest received pose is discarded first, even if its timestamp is far in the future.
 TEST(PoseHistory, DiscardsEarliestReceivedPosesWhenFull) {
   PoseHistory history({.max = 3});
   history.add(seconds(1e9), pose_at(0.0));

@@ -140,7 +140,7 @@ void Robot::send_nonsense(const Measured& measured) {
   const auto& points = measured.scan.points;
   PoseMessage wrong = measured.pose;
   wrong.position.x += 3.0;
-  send_odometry(clock_, wrong);                      // a different pose with the same time stamp
+  send_odometry(clock_, wrong);                      // a different pose with the same timestamp
   send_odometry(clock_ + 3'600'000'000'000, wrong);  // from the future
   wrong.orientation = {0, 0, 0, 0};
   send_odometry(clock_ - 10'000'000, wrong);

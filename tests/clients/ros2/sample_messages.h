@@ -40,7 +40,7 @@ struct SampleOdometry {
   Odometry message{};
 };
 
-/// Transforms relative to parent frames, with the same time stamp.
+/// Transforms relative to parent frames, with the same timestamp.
 struct SampleTransforms {
   struct Frame {
     std::string parent, name;

@@ -78,8 +78,8 @@ struct Corruption {
 
 TEST(CloudScan, RejectsMessagesWithInconsistentSizes) {
   const std::vector<Corruption> corruptions = {
-      {"1 rows of 64 are a different number", [](SampleCloud& c) { c.data.pop_back(); }},
-      {"2 rows of 32 are a different number",
+      {"it must have 1 x 64", [](SampleCloud& c) { c.data.pop_back(); }},
+      {"it must have 2 x 32",
        [](SampleCloud& c) {
          c.message.height = 2;
          c.message.width = 2;
@@ -91,7 +91,7 @@ TEST(CloudScan, RejectsMessagesWithInconsistentSizes) {
        [](SampleCloud& c) { c.message.height = c.message.width = 0xFFFFFFFF; }},
       {"points; the maximum is", [](SampleCloud& c) { c.message.width = 0x80000000; }},
       {"times 16 require more", [](SampleCloud& c) { c.message.width = 0x01000001; }},
-      {"0 rows of 4294967280 are a different number",
+      {"it must have 0 x 4294967280",
        [](SampleCloud& c) {
          c.message.height = 0;
          c.message.row_step = 0xFFFFFFF0;
@@ -155,8 +155,7 @@ TEST(DepthScan, RejectsImagesWithInconsistentSizes) {
     return thrown_message([&] { make_scan(image.message, intrinsics); });
   };
   EXPECT_THAT(error_message([](Image& i) { i.step = 7; }), HasSubstr("4 times 2 require more"));
-  EXPECT_THAT(error_message([](Image& i) { i.step = 9; }),
-              HasSubstr("2 rows of 9 are a different number"));
+  EXPECT_THAT(error_message([](Image& i) { i.step = 9; }), HasSubstr("it must have 2 x 9"));
   EXPECT_THAT(error_message([](Image& i) { i.data._length = 15; }), HasSubstr("it has 15 bytes"));
   EXPECT_THAT(error_message([](Image& i) { i.width = 0; }), HasSubstr("from 1 to 32768"));
   EXPECT_THAT(error_message([](Image& i) { i.height = 0xFFFFFFFF; }), HasSubstr("from 1 to 32768"));

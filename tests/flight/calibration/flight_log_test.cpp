@@ -140,7 +140,8 @@ TEST(CsvLog, ReportsErrorsWithLineNumber) {
   rejects("time_s,power_w\n", "line 1 has no column east_m_s");
   rejects(header + "1,0,0,0,x\n", "line 2 has \"x\" for power_w; it must be a number");
   rejects(header + "1,0,0\n", "line 2 has too few fields");
-  rejects(header + "1,0,0,0,9\n1,0,0,0,9\n", "line 3 is not later than the previous line");
+  rejects(header + "1,0,0,0,9\n1,0,0,0,9\n",
+          "line 3 has a time that is not later than that of the previous line");
   rejects(header, "the log contains no samples");
 }
 

@@ -335,7 +335,7 @@ TEST(ExecutedItems, AreReadFromMiseMessagesWhenLogged) {
   EXPECT_DOUBLE_EQ(read.commands[2].time, 4.0);
 }
 
-// Legs with equal time stamps are an uploaded list and not a flight. They contain no settle times.
+// Legs with equal timestamps are an uploaded list and not a flight. They contain no settle times.
 TEST(ExecutedItems, AreNotUsedForSettleTimeWithoutTimes) {
   FlightLog log = read_dataflash(make_log(newest(), reference_vehicle(250.0)));
   const LocalFrame frame({51.0, 7.0, 0.0});

@@ -390,7 +390,7 @@ TEST(MeasuredSpace, RejectsInvalidScansAndConfigurations) {
               testing::HasSubstr("1 points but 0 pixels"));  // no pixels
   scan.pixels = {96 * 64};
   EXPECT_THAT(testing_support::thrown_message([&] { space.insert(scan, small_camera); }),
-              testing::HasSubstr("a scan has pixel 6144"));  // one too large
+              testing::HasSubstr("a scan refers to pixel 6144"));  // one too large
   EXPECT_THAT(testing_support::thrown_message([&] { space.insert(scan, 0.0); }),
               testing::HasSubstr("the ray spacing is 0.0"));
   EXPECT_THAT(testing_support::thrown_message([&] { MeasuredSpace({.voxel = 0.0}); }),

@@ -87,10 +87,10 @@ TEST(PriorObstacle, RejectsInvalidConfigurations) {
   EXPECT_THAT(error_message(config), HasSubstr("the prior town.obj has an uncertainty of -1"));
   config = {.name = "x"};
   config.points = {{0, 0, std::numeric_limits<float>::infinity()}};
-  EXPECT_THAT(error_message(config), HasSubstr("x has a point that is not finite"));
+  EXPECT_THAT(error_message(config), HasSubstr("x has a non-finite point"));
   config = {.name = "x"};
   config.columns.emplace_back();
-  EXPECT_THAT(error_message(config), HasSubstr("x has a column that is empty or not finite"));
+  EXPECT_THAT(error_message(config), HasSubstr("x has an empty or non-finite column"));
 }
 
 // The closest obstacle counts and is reported by its own name.

@@ -176,7 +176,7 @@ TEST(MeasuredUnion, RejectsSpacesWithoutRegionOrWithOtherVoxelSize) {
       thrown_message([] {
         MeasuredUnion(both(make_space(west), MeasuredSpace({.voxel = 0.25, .region = east})));
       }),
-      HasSubstr("measured_space.voxel is 0.25; it must be equal to that of the space"));
+      HasSubstr("measured_space.voxel is 0.25; it must be equal to the voxel size of the space"));
 }
 
 }  // namespace

@@ -245,7 +245,7 @@ TEST(Litchi, RejectsTooManyCapturesOrWaypoints) {
   plan = sample_plan(vehicle_profile("generic"));
   plan.waypoints.resize(120, plan.waypoints[0]);
   EXPECT_THAT(testing_support::thrown_message([&] { write_litchi(plan); }),
-              testing::HasSubstr("has 120 waypoints; Litchi's limit is 99"));
+              testing::HasSubstr("has 120 waypoints; the maximum for Litchi is 99"));
 }
 
 }  // namespace

@@ -128,7 +128,7 @@ TEST(Parameters, ReportSettingsThatChangeTheReturn) {
                               AutopilotType::ardupilot),
               ElementsAre("RTL_ALT is 4700 cm and RTL_ALT_M 4700 m; they must be equal"));
   EXPECT_THAT(return_problems({{"RTL_RETURN_ALT", 47}, {"RTL_CONE_ANG", 0}}, AutopilotType::px4),
-              ElementsAre("NAV_ACC_RAD is 10; it must be in [0.05, 1]"));
+              ElementsAre("NAV_ACC_RAD is 10; it must be from 0.05 to 1"));
 }
 
 TEST(Parameters, RejectInvalidLine) {

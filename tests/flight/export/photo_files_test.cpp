@@ -238,7 +238,7 @@ TEST(PhotoRuns, OfAFileAreThoseOfTheMission) {
   EXPECT_THAT(problems(), Contains(HasSubstr("at least 0.1 m")));
   trigger->params[0] = 3.0;
   trigger->params[2] = 1.0;
-  EXPECT_THAT(problems(), Contains(HasSubstr("captures an image at once")));
+  EXPECT_THAT(problems(), Contains(HasSubstr("captures an image immediately")));
 }
 
 TEST(LitchiParts, HoldTheWholeFlightInFilesOf99Waypoints) {

@@ -281,7 +281,7 @@ TEST(Recording, FormatsThatCannotCommandAPayloadNameIt) {
       with_scanner_commands(plan_with(zenmuse_l2), format, to_the_left, plenty, notes);
       ADD_FAILURE() << format_info(format).name;
     } catch (const Error& error) {
-      EXPECT_THAT(error.what(), HasSubstr("cannot command the Zenmuse L2"));
+      EXPECT_THAT(error.what(), HasSubstr("cannot control the Zenmuse L2"));
     }
   }
   ScannerAim stopping = to_the_left;
@@ -297,7 +297,7 @@ TEST(Recording, ScannersThatRecordByThemselvesAreLeftToThePilot) {
   std::vector<std::string> notes;
   const FlightPlan plan =
       with_scanner_commands(plan_with(psdk_payload), Format::kmz, to_the_left, plenty, notes);
-  EXPECT_THAT(notes, ElementsAre(HasSubstr("start the recording of the scanner before take-off")));
+  EXPECT_THAT(notes, ElementsAre(HasSubstr("start the scanner recording before take-off")));
   const KmzContent kmz = unpack_kmz(write_kmz(plan));
   EXPECT_THAT(kmz.waylines_wpml, HasSubstr("<wpml:payloadEnumValue>65534"));
   EXPECT_THAT(kmz.waylines_wpml, Not(HasSubstr("gimbalRotate")));

@@ -161,7 +161,8 @@ TEST(LitchiInterpreter, ReportsChangedSpeedsAndCurvesWithLineNumber) {
               IsEmpty());
   EXPECT_THAT(with(",0.2,0,0,0", ",9.0,0,0,0"),
               Contains(StartsWith("line 3 has a curve of 9.0 m")));
-  EXPECT_THAT(with(",0,4.00,", ",0,15.00,"), Contains(StartsWith("line 3 has speed 15.00 m/s")));
+  EXPECT_THAT(with(",0,4.00,", ",0,15.00,"),
+              Contains(StartsWith("line 3 has a speed of 15.00 m/s")));
   EXPECT_THAT(with(",0,2000,", ",0,0,"), Contains(HasSubstr("holds 0.00 s before")));
 }
 

@@ -41,7 +41,7 @@ TEST_F(VehicleModelFlight, IsDisplacedByPositionError) {
   EXPECT_NEAR((model_.position() - (Vector3d(1, 2, 30) - error_)).norm(), 0.0, 0.005);
 }
 
-// A set point with constant velocity is followed without lag.
+// A setpoint with constant velocity is followed without lag.
 TEST_F(VehicleModelFlight, FollowsSteadySetPointWithoutLag) {
   SetPoint target{{1, 2, 30}, {3, 0, 0}};
   for (int i = 0; i < 1500; ++i) {

@@ -193,7 +193,8 @@ TEST(Motion, RejectsInvalidLimits) {
   EXPECT_THAT(error_message(good, {.reserve = 1.0}), HasSubstr("reserve"));
   Vehicle heavy = good;
   heavy.mass = 20;
-  EXPECT_THAT(error_message(heavy, {}), HasSubstr("less than hovering with its mass requires"));
+  EXPECT_THAT(error_message(heavy, {}),
+              HasSubstr("less than the power for hovering with its mass"));
   Vehicle still = good;
   still.mode.acceleration = 0;
   EXPECT_THAT(error_message(still, {}), HasSubstr("acceleration is 0"));

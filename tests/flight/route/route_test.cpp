@@ -380,7 +380,7 @@ TEST(Route, RejectsInvalidOptions) {
   RouteOptions nowhere = options();
   nowhere.takeoff.x() = std::nan("");
   EXPECT_THAT(testing_support::thrown_message([&] { plan({}, site(), nowhere); }),
-              testing::HasSubstr("the take-off point is not a finite position"));
+              testing::HasSubstr("the take-off point has a non-finite position"));
   EXPECT_TRUE(plan({}, site()).sorties.empty());  // an empty plan is valid
 }
 
@@ -396,7 +396,7 @@ TEST(CheckRoute, ReportsLegPositionAndDistance) {
   EXPECT_THAT(testing_support::thrown_message([&] {
                 check_route({{0, 0, std::nan("")}}, space, 1.0);
               }),
-              testing::HasSubstr("point 0 of the route is not a finite position"));
+              testing::HasSubstr("point 0 of the route has a non-finite position"));
 }
 
 TEST(CapturePoint, HasYawClockwiseFromNorthAndPitchFromHorizon) {

@@ -200,8 +200,8 @@ TEST(CloudIo, ReportsCauseForInvalidLasFiles) {
   } cases[] = {
       {"LASF", "is not a LAS file"},
       {std::string(500, 'x'), "is not a LAS file"},
-      {with(25, 5), "is LAS 1.5 with points of format 6; supported are LAS 1.0 to 1.4"},
-      {with(104, 11), "is LAS 1.4 with points of format 11; supported are LAS 1.0 to 1.4"},
+      {with(25, 5), "is LAS 1.5 with points of format 6; supported: LAS 1.0 to 1.4"},
+      {with(104, 11), "is LAS 1.4 with points of format 11; supported: LAS 1.0 to 1.4"},
       {with(104, 0x86), "is compressed (LAZ), but the LAZ record is missing"},
       {with(105, 20), "has points of 20 bytes; those of format 6 have 30"},
       {with(96, 0), "has a point offset inside its header"},
@@ -229,7 +229,7 @@ TEST(CloudIo, ReportsCauseForInvalidPcdFiles) {
       {"", "its header has no DATA"},
       {"ply\n", "line 1: 'ply' is not a PCD header keyword"},
       {"FIELDS x y z\nSIZE 4 4\n", "line 2: SIZE has 2 entries for 3 fields"},
-      {"FIELDS x y z\nSIZE 4 four 4\n", "line 2: 'four' is found where a number of SIZE"},
+      {"FIELDS x y z\nSIZE 4 four 4\n", "line 2: expected a number of SIZE"},
       {"FIELDS x y\nSIZE 4 4\nTYPE F F\nPOINTS 1\nDATA ascii\n1 2\n", "the fields x, y and z"},
       {"FIELDS x\nSIZE 3\nTYPE F\nDATA ascii\n", "'x' has a combination of SIZE, TYPE and COUNT"},
       {fields + "DATA ascii\n1 2 3\n", "neither POINTS nor WIDTH and HEIGHT"},
@@ -265,7 +265,7 @@ TEST(CloudIo, ReportsCauseForInvalidPlyAndTextFiles) {
        "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\n"
        "property float z\nend_header\n",
        "contains no points"},
-      {"word.xyz", "1 2 3\n1 two 3\n", "line 2: 'two' is found where a coordinate is expected"},
+      {"word.xyz", "1 2 3\n1 two 3\n", "line 2: expected a coordinate, found 'two'"},
       {"short.xyz", "1 2\n", "line 1: ends where a coordinate is expected"},
       {"nan.ply", head + "end_header\n0 nan 0\n",
        "contains no valid points; 1 points are NaN or infinite"},

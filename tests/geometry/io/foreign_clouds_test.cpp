@@ -90,7 +90,7 @@ TEST_F(ForeignCloud, ReadsTextWithByteOrderMarksAndAnyLineEnds) {
   for (const char c : text) wide += std::string{'\0', c};
   expect_corners("a.xyz", wide);
   EXPECT_THAT(error_message("a.xyz", replaced(lines(" "), "\n", " ")),
-              HasSubstr("has 24 numbers in its only line; write one point per line"));
+              HasSubstr("has 24 numbers on a single line; write one point per line"));
 }
 
 TEST_F(ForeignCloud, ReadsTextWithHeadersAndOtherSeparators) {

@@ -172,7 +172,7 @@ TEST_F(CorruptedLaz, ReportsUnsupportedCompression) {
   }
   expect_rejection(104, std::uint8_t{0xC7}, "points of format 71, compressed (LAZ); supported");
   expect_rejection(record_ - 54 + 18, std::uint16_t{1}, "the LAZ record is missing");
-  expect_rejection(record_ - 54 + 20, std::uint16_t{40}, "it ends too early");
+  expect_rejection(record_ - 54 + 20, std::uint16_t{40}, "it ends prematurely");
   expect_rejection(record_, std::uint16_t{1}, "is compressed by LAZ method 1");
   expect_rejection(record_ + 2, std::uint16_t{1}, "is compressed by LAZ method 3");
   expect_rejection(record_ + 12, std::uint32_t{0}, "its chunk size is zero");

@@ -95,8 +95,8 @@ TEST(MeshLimits, RejectPlyFaceWithTooManyCorners) {
   bytes.append(reinterpret_cast<const char*>(&corners), sizeof(corners));
   bytes.resize(bytes.size() + corners);
   EXPECT_THAT([&] { parse_ply("a.ply", bytes); },
-              ThrowsMessage<Error>(
-                  HasSubstr("a.ply: face 0 has a list of 1000001 values; the maximum is 1e6")));
+              ThrowsMessage<Error>(HasSubstr(
+                  "a.ply: face 0 has a list of 1000001 values; the maximum is 1 million")));
 }
 
 /// Property: a file that is read in chunks has no errors at chunk boundaries.

@@ -98,7 +98,7 @@ std::vector<BadInput> bad_inputs() {
       {"AngleTooWide", whole + "sensor: {horizontal_fov_deg: 180}\n",
        "key sensor.horizontal_fov_deg is 180; it must be a number from 0.1 to 179 [degrees]"},
       {"HugeImage", whole + "sensor: {width: 32768, height: 32768}\n",
-       "key sensor.width: the image has more than 1e8 pixels"},
+       "key sensor.width: the image has more than 100 million pixels"},
       {"EmptyRange", whole + "sensor: {min_range: 5, max_range: 4}\n",
        "MISSION:3: key sensor.max_range must be greater than sensor.min_range"},
       {"TwoScales", "scene: {model: 'builtin:teapot', scale: 2, longest_side: 1}\n" + evaluated,

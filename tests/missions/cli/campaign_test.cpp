@@ -322,7 +322,7 @@ TEST_F(CampaignCommand, WritesRunnableSlurmScripts) {
   }
   const auto result = support::run_external_program(submit, folder_.path());
   ASSERT_EQ(result.exit_code, 0) << result.output;
-  EXPECT_THAT(result.output, HasSubstr("Slurm job 42: 3 tasks of 3 runs"));
+  EXPECT_THAT(result.output, HasSubstr("Slurm job 42: 3 tasks, up to 3 runs per task"));
   EXPECT_THAT(read_content(folder_.path() / "bin" / "sbatch.words"),
               HasSubstr("--dependency=afterany:42 "));
   const fs::path out = folder_.path() / "out";

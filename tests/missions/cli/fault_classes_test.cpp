@@ -185,7 +185,7 @@ TEST(FaultClasses, RejectsFilesLargerThanMemoryLimits) {
   geometry::write_depth_png(image, folder / "d.png");
   EXPECT_THAT(rejection({"next", folder.write("m.yaml", tests::quick_mission()), "--survey",
                          folder / "live", "--scan", folder / "d.png", "--pose", "0 0 2 1 0 0 0"}),
-              HasSubstr("more than 2.5e7 pixels"));
+              HasSubstr("more than 25 million pixels"));
 }
 
 }  // namespace

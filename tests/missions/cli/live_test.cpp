@@ -57,7 +57,7 @@ TEST(CheckLive, SaysWhatFollowsFromTheMission) {
               testing::AllOf(HasSubstr("barn.yaml: no problems found\n"),
                              HasSubstr("160 x 120 pixels, 60 x 47 degrees, range 0 to 8 m"),
                              HasSubstr("planner.scene_box, 2 x 2 x 1.7 m"),
-                             HasSubstr("first     any view that sees the scene"),
+                             HasSubstr("first     any view from which the scene is visible"),
                              HasSubstr("warning   site.geofence is missing")));
   const ProgramRun far =
       run_skycap({"check", folder / "barn.yaml", "--set", "planner.view_distance=9"});
@@ -79,9 +79,9 @@ TEST(CheckLive, WarnsBeyondTheUsefulRangeOfTheCamera) {
     return run_skycap({"check", folder / "barn.yaml", "--set", "planner.view_distance=" + distance})
         .out;
   };
-  EXPECT_THAT(check("4"), HasSubstr("the view distance (4 m) should be in the useful range of the "
-                                    "camera intel_d435 (0.3 to 3 m)"));
-  EXPECT_THAT(check("2"), testing::Not(HasSubstr("useful range")));
+  EXPECT_THAT(check("4"), HasSubstr("the view distance (4 m) should be in the range in which the "
+                                    "camera intel_d435 is accurate (0.3 to 3 m)"));
+  EXPECT_THAT(check("2"), testing::Not(HasSubstr("is accurate")));
 }
 
 class LiveCommands : public testing::Test {

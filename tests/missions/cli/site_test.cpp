@@ -197,7 +197,7 @@ TEST_F(Site, SelectsTargetByIdAttributeOrPosition) {
 
 TEST_F(Site, ReportsMissingOptions) {
   EXPECT_THAT(propose("--id DEBY_7").err, HasSubstr("no object with id DEBY_7"));
-  EXPECT_THAT(propose("--at 48.75,11.39").err, HasSubstr("contains nothing within 10 m"));
+  EXPECT_THAT(propose("--at 48.75,11.39").err, HasSubstr("contains no object within 10 m"));
   EXPECT_THAT(propose("--at north").err, HasSubstr("--at is north; it must be LATITUDE,LONGITUDE"));
   EXPECT_THAT(propose("--id DEBY_1 --at 48,11").err, HasSubstr("mutually exclusive"));
   EXPECT_FALSE(std::filesystem::exists(folder_.path() / "house.yaml"));

@@ -115,7 +115,8 @@ TEST(WrittenMission, ViewsWithoutAReturnAreMissingFromTheFigures) {
             summary.at("coverage_visible").get<double>() - 0.01);
   EXPECT_THAT(beside().out, HasSubstr("  mission   route files, "));
   EXPECT_THAT(beside().out, HasSubstr("Warning: view "));
-  EXPECT_THAT(beside().out, HasSubstr("move flight.takeoff more than 54 m away"));
+  EXPECT_THAT(beside().out,
+              HasSubstr("move flight.takeoff more than 54 m (horizontal distance) away"));
 }
 
 TEST(WrittenMission, FormatsThatCaptureTheSameShareTheirFigures) {
@@ -154,7 +155,7 @@ TEST(WrittenMission, FieldSheetSaysWhatTheCrewNeeds) {
   EXPECT_THAT(sheet, Not(HasSubstr("<script")));
   EXPECT_THAT(sheet, HasSubstr("Set the RTH altitude to "));
   EXPECT_THAT(sheet, HasSubstr("return altitude above take-off"));
-  EXPECT_THAT(sheet, HasSubstr("What will be missing"));
+  EXPECT_THAT(sheet, HasSubstr("Expected gaps"));
   EXPECT_THAT(sheet, HasSubstr("is not in the route files"));
   EXPECT_THAT(sheet, HasSubstr("mission.kmz"));
   EXPECT_THAT(sheet, HasSubstr("47.1"));

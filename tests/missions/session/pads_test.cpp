@@ -170,7 +170,7 @@ TEST(Pads, AreRejectedWhenTerrainIsTooSteep) {
   const auto run = run_skycap({"check", mission});
   EXPECT_EQ(run.exit_code, 1) << run.err;
   // A rise of 2.5 m over 10 m.
-  EXPECT_THAT(run.out, HasSubstr("has a slope of 14.0 degrees by the terrain")) << run.out;
+  EXPECT_THAT(run.out, HasSubstr("has a slope of 14.0 degrees in the terrain data")) << run.out;
 }
 
 TEST(Pads, AreCheckedAgainstSceneInRouteFiles) {

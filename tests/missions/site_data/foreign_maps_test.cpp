@@ -128,7 +128,7 @@ TEST_F(ForeignMap, TreatsHeightsUpToZeroAsUnknown) {
 
 TEST_F(ForeignMap, ListsAttributesWhenHeightIsMissing) {
   const std::string text = building(R"("name":"hall","hauteur":17)");
-  EXPECT_THAT(error_message("a.geojson", text), HasSubstr("(it has the attributes "));
+  EXPECT_THAT(error_message("a.geojson", text), HasSubstr("(available attributes: "));
   EXPECT_THAT(error_message("a.geojson", text), HasSubstr("hauteur, "));
   const Prior prior = read("a.geojson", text, [](Source& s) { s.height_attribute = "hauteur"; });
   EXPECT_NEAR(prior.box.max().z(), 17.0, 1e-3);
@@ -257,7 +257,7 @@ TEST_F(ForeignMap, ReadsUnitsOfDrawings) {
     EXPECT_THAT(prior.notes, Contains(HasSubstr("missing unit ($INSUNITS)")));
   }
   EXPECT_THAT(error_message("a.dxf", dxf(insunits(99), 1.0), here),
-              HasSubstr("has the unknown unit $INSUNITS 99; set unit"));
+              HasSubstr("has an unknown unit: $INSUNITS 99; set unit"));
   const Prior reported = read("a.dxf", dxf(insunits(99), 0.5), [&](Source& s) {
     here(s);
     s.unit = 0.5;

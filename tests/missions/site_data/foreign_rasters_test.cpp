@@ -74,7 +74,7 @@ TEST_F(ForeignRaster, ReadsBandUnitsAndRejectsUnknownOnes) {
     EXPECT_NEAR(prior.box.sizes().z(), 12.0 * metres, 0.01) << unit;
   }
   EXPECT_THAT(testing_support::thrown_message([&] { read({.unit = "cubits"}); }),
-              HasSubstr("has heights in the unknown unit 'cubits'; set unit"));
+              HasSubstr("has heights in an unknown unit: 'cubits'; set unit"));
   EXPECT_NEAR(read({.unit = "cubits"}, [](Source& s) { s.unit = 1.0; }).box.sizes().z(), 12.0,
               0.01);
   EXPECT_THAT(read({.bands = 3}).notes, Contains(HasSubstr("the first of 3 bands")));

@@ -54,7 +54,7 @@ TEST(Trajectory, ReportsTheInvalidPose) {
               testing::HasSubstr("has no poses"));
   EXPECT_THAT(
       testing_support::thrown_message([&] { Trajectory(std::vector<StampedPose>{{.time = NAN}}); }),
-      testing::HasSubstr("pose 0 has a value that is not a finite number"));
+      testing::HasSubstr("pose 0 has a non-finite value"));
   EXPECT_THAT(testing_support::thrown_message([&] {
                 Trajectory(std::vector<StampedPose>{{.attitude = Quaterniond(0, 0, 0, 0)}});
               }),

@@ -129,7 +129,7 @@ TEST(StereoRule, RejectsValuesOutOfRange) {
   EXPECT_THAT(validation_error(rule), HasSubstr("max_incidence_deg is 86"));
   rule = {};
   rule.min_parallax = 41.0 * degree;
-  EXPECT_THAT(validation_error(rule), HasSubstr("less than the upper limit"));
+  EXPECT_THAT(validation_error(rule), HasSubstr("less than the maximum parallax"));
   rule.min_parallax = 0.5 * degree;
   EXPECT_THAT(validation_error(rule), HasSubstr("between 1 and 60 degrees"));
 }

@@ -253,7 +253,7 @@ TEST_F(District, RejectsPadInsideBuilding) {
   const auto rejected = run();
   EXPECT_EQ(rejected.exit_code, 2);
   EXPECT_THAT(rejected.err,
-              AllOf(HasSubstr("key pads: "), HasSubstr("is not free, level and even ground")));
+              AllOf(HasSubstr("key pads: "), HasSubstr("must be on free, level and even ground")));
   write(map + "pads: ['" + value("latitude_deg") + "," + value("longitude_deg") + "']\n");
   const auto given = run({"--list"});
   EXPECT_EQ(given.exit_code, 0) << given.err;

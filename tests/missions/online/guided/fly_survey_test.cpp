@@ -91,7 +91,7 @@ TEST_F(FlySurvey, MatchesPlanAndKeepsClearance) {
   const Vector3d off = autopilot_->position() - survey_->flight()->pad();
   EXPECT_LT(off.norm(), setup.flight().tracking_error);
   const flight::ClearanceBudget clearance = setup.flight().budget();
-  // Set points are rounded to 1e-7 degrees, 1.1 cm.
+  // Setpoints are rounded to 1e-7 degrees, 1.1 cm.
   EXPECT_GT(find_nearest(autopilot_->set_points(), setup.scene()),
             clearance.total() - clearance.map_error - 0.02);
   EXPECT_GT(find_nearest(autopilot_->track(), setup.scene()),
@@ -149,7 +149,7 @@ bool are_near(const std::vector<Vector3d>& positions, const std::vector<Vector3d
   });
 }
 
-/// Set points are at most 0.5 m apart. The path from the pad begins without set points.
+/// Setpoints are at most 0.5 m apart. The path from the pad begins without setpoints.
 TEST_F(FlySurvey, StaysOnLegsWhenLinkIsLost) {
   fly();
   const std::vector<Vector3d> legs = autopilot_->set_points();
@@ -267,7 +267,7 @@ INSTANTIATE_TEST_SUITE_P(
                        "rejected the command (result 4) to turn the gimbal; configure"},
         GroundedFlight{"short_timeout",
                        {.guided_timeout = 0.2F},
-                       "GUID_TIMEOUT must be from 0.5 to 5 s; it is 0.2 s"},
+                       "GUID_TIMEOUT must be from 0.5 to 5 s, but is 0.2 s"},
         GroundedFlight{"flat_battery", {.battery = 0.265}, "battery at 26%"}),
     [](const auto& test) { return test.param.name; });
 

@@ -1,4 +1,4 @@
-// A vehicle guided along legs by an autopilot that follows set points as ArduCopter does: it lags
+// A vehicle guided along legs by an autopilot that follows setpoints as ArduCopter does: it lags
 // behind them, overshoots the last one, drifts, and may be stopped at any time.
 #include "missions/online/guided/guided_flight.h"
 
@@ -124,7 +124,7 @@ double whole_time(const Faults& faults) {
   return flight.autopilot.time() - flight.autopilot.taken_off();
 }
 
-// At the end of braking, the vehicle is ahead of its set point by more than the tolerance of
+// At the end of braking, the vehicle is ahead of its setpoint by more than the tolerance of
 // verified legs.
 TEST(GuidedFlight, OvershootsSetPointsOnTestAutopilot) {
   Flight flight({.jerk = heavy_jerk});
@@ -217,7 +217,7 @@ INSTANTIATE_TEST_SUITE_P(GuidedFlight, Stalls,
                                   "for" + std::to_string(static_cast<int>(test.param.duration));
                          });
 
-// The next set points start at the position of the vehicle, not at the last set point.
+// The next setpoints start at the position of the vehicle, not at the last setpoint.
 TEST_P(Stalls, EndAtVehiclePosition) {
   Flight flight({.jerk = default_jerk});
   StallingPort port(flight.autopilot, GetParam().begin, GetParam().duration);

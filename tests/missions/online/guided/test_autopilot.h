@@ -1,8 +1,8 @@
 /// Autopilot with ArduCopter's MAVLink interface, which flies the simulated vehicle of fly-test and
 /// has the faults that a test selects. Its time advances only through calls.
 ///
-/// With a jerk limit, it follows set points as ArduCopter does. Limits of acceleration and jerk
-/// shape the set points, so the vehicle lags behind them and overshoots the last one
+/// With a jerk limit, it follows setpoints as ArduCopter does. Limits of acceleration and jerk
+/// shape the setpoints, so the vehicle lags behind them and overshoots the last one
 /// (AC_PosControl::input_pos_vel_accel_xy; AP_Math/control.cpp, shape_pos_vel_accel).
 #pragma once
 
@@ -38,8 +38,8 @@ struct Faults {
   std::optional<double> blown_away = {};
   std::optional<double> battery_fails = {};  ///< time at which the battery becomes nearly empty
   double battery = 1.0;                      ///< initial charge, as a fraction
-  std::optional<double> jerk = {};           ///< jerk limit of the shaped set points [m/s^3]
-  /// Amplitude of the drift around the set points [m].
+  std::optional<double> jerk = {};           ///< jerk limit of the shaped setpoints [m/s^3]
+  /// Amplitude of the drift around the setpoints [m].
   double drift = 0.0;
   double wind_pitch = 0.0;  ///< constant pitch against the wind [rad]
   /// Gimbal reports angles relative to the vehicle, like servo gimbals.
@@ -74,7 +74,7 @@ class TestAutopilot {
   const Eigen::Vector3d& position() const { return vehicle_.position(); }
   /// Returns the positions of the vehicle at 25 Hz.
   const std::vector<Eigen::Vector3d>& track() const { return track_; }
-  /// Returns the received set points in the mission frame.
+  /// Returns the received setpoints in the mission frame.
   const std::vector<Eigen::Vector3d>& set_points() const { return set_points_; }
 
  private:

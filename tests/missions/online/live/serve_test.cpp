@@ -166,7 +166,7 @@ TEST(Serve, AnswersOneClientAtATime) {
     }
   }
   EXPECT_TRUE(answer);
-  EXPECT_THAT(served.notes(), HasSubstr("a second client was refused"));
+  EXPECT_THAT(served.notes(), HasSubstr("a second client was rejected"));
 }
 
 class ServeSession : public testing::Test {
@@ -356,7 +356,7 @@ TEST_F(ServeSession, ReportsInvalidRequestsWithoutChanges) {
   EXPECT_THAT(ask(header, make_payload(scan)), HasSubstr("expected points, cloud or depth"));
   EXPECT_THAT(ask({{"type", "dance"}}), HasSubstr("unknown type 'dance'"));
   EXPECT_THAT(ask({{"number", 1}}), HasSubstr("error"));
-  EXPECT_THAT(ask({{"type", "finish"}}), HasSubstr("no scan yet"));
+  EXPECT_THAT(ask({{"type", "finish"}}), HasSubstr("no scan has been accepted yet"));
   nlohmann::ordered_json depth{{"type", "scan"},    {"number", 0}, {"pose", make_pose(scan)},
                                {"format", "depth"}, {"width", 2},  {"height", 2},
                                {"unit", 0.001}};

@@ -61,7 +61,7 @@ TEST(Wire, WaitsForIncompleteMessages) {
 }
 
 TEST(Wire, RejectsInvalidMessages) {
-  EXPECT_THAT(rejection(std::string(12, '\xff')), HasSubstr("larger than allowed"));
+  EXPECT_THAT(rejection(std::string(12, '\xff')), HasSubstr("too large"));
   std::string damaged = encode_frame(sample);
   damaged.back() ^= 1;
   EXPECT_THAT(rejection(damaged), HasSubstr("checksum"));

@@ -65,7 +65,7 @@ TEST_F(Rawlog, RejectsContentBeyondMemoryLimits) {
   scattered->resizePoints3DVectors(25'000'001);
   for (const auto& [scan, what] : {std::pair(large, "pixels"), std::pair(scattered, "points")}) {
     EXPECT_THAT(frames(write({robot_pose(1.0, {}), scan}, "x.rawlog.gz")), IsEmpty());
-    EXPECT_THAT(notes_.at(0), AllOf(HasSubstr("more than 2.5e7"), HasSubstr(what)));
+    EXPECT_THAT(notes_.at(0), AllOf(HasSubstr("more than 25 million"), HasSubstr(what)));
   }
   Objects sensors{robot_pose(1.0, {})};
   for (int i = 0; i <= 64; ++i) sensors.push_back(range_scan(1.0, std::to_string(i)));

@@ -108,7 +108,7 @@ TEST_F(Recording, RejectsDecreasingTimes) {
   write_tum("1.00 0 0 0 0 0 0 1\n0.90 0 0 0 0 0 0 1\n");
   EXPECT_THAT(error_message(), AllOf(HasSubstr("groundtruth.txt: line 2"), HasSubstr("0.90")));
   write("groundtruth.txt", "now 0 0 0 0 0 0 1\n");
-  EXPECT_THAT(error_message(), HasSubstr("'now' is found where a time is expected"));
+  EXPECT_THAT(error_message(), HasSubstr("expected a time, found 'now'"));
 }
 
 TEST_F(Recording, ReadsSevenScenesPoseFiles) {

@@ -169,7 +169,8 @@ TEST(Fleet, RejectsCorruptedRowsWithLineNumber) {
   EXPECT_THAT(error_message(3, 4, "fleet-2.plan/../../x.plan"),
               HasSubstr("is not one of fleet-2.*"));
   EXPECT_THAT(error_message(2, 5, "soon"), HasSubstr("timetable.csv:2: start_s is \"soon\""));
-  EXPECT_THAT(error_message(2, 6, "-1"), HasSubstr("timetable.csv:2: the landing must be after"));
+  EXPECT_THAT(error_message(2, 6, "-1"),
+              HasSubstr("timetable.csv:2: the landing time must be after"));
   EXPECT_THAT(error_message(2, 9, "1e300"), HasSubstr("timetable.csv:2: pad"));
 }
 
