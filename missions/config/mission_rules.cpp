@@ -373,6 +373,11 @@ std::string in_keys(std::string_view message) {
 }  // namespace
 
 void check_planner(const MissionDocument& document) {
+  if (document.planner.name == survey::PlannerName::external && !document.planner.file) {
+    document.reject("planner.file",
+                    "is missing; the planner external requires a shared library (.so) or a Python "
+                    "file (.py)");
+  }
   try {
     const survey::PlannerOptions planner = planner_options(document, flight_options(document));
     planner.validate();

@@ -147,7 +147,7 @@ TEST_F(Ros2LiveSurvey, MatchesNextCommandWithSameScans) {
   EXPECT_EQ(bridge_->exit_code(), 0) << bridge_->log_text();
   EXPECT_TRUE(server_->exit_code());
   EXPECT_TRUE(std::filesystem::exists(folder_.path() / "served" / "views.csv"));
-  EXPECT_THAT(bridge_->log_text(), HasSubstr("warning: odometry: a different pose"));
+  EXPECT_THAT(bridge_->log_text(), HasSubstr("warning: odometry: two different poses"));
   EXPECT_THAT(bridge_->log_text(), HasSubstr("warning: cloud: "));
 }
 

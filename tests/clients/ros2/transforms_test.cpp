@@ -113,8 +113,8 @@ TEST_F(TransformTree, RejectsInvalidTransforms) {
   EXPECT_THAT(error_message(10.1, {"mast", "gimbal"}), HasSubstr("it must remain 'base_link'"));
   EXPECT_THAT(error_message(10.1, {"base_link", "gimbal"}, true),
               HasSubstr("must not be both static and moving"));
-  EXPECT_THAT(error_message(10.1, {"", "x"}), HasSubstr("parent has no name"));
-  EXPECT_THAT(error_message(10.1, {"x", ""}), HasSubstr("child has no name"));
+  EXPECT_THAT(error_message(10.1, {"", "x"}), HasSubstr("parent frame of a transform has no name"));
+  EXPECT_THAT(error_message(10.1, {"x", ""}), HasSubstr("child frame of a transform has no name"));
   EXPECT_THAT(error_message(10.1, {"x", std::string(101, 'y')}),
               HasSubstr("longer than 100 bytes"));
   EXPECT_THAT(error_message(0.0, {"x", "y"}), HasSubstr("timestamp is not set"));

@@ -308,7 +308,7 @@ TEST(Trajectory, RoundTripsThroughTumWithWLast) {
 
 TEST(Trajectory, RejectsInvalidFilesWithLineNumber) {
   EXPECT_THAT(validate_tum("0 0 0 0 0 0 0 1\n0 0 0 0 0 0 0 1\n"),
-              testing::Contains(HasSubstr("line 2 is not later")));
+              testing::Contains(HasSubstr("line 2 has a time that is not later")));
   EXPECT_THAT(validate_tum("0 0 0 0 0 0 0 2\n"), testing::Contains(HasSubstr("length 2")));
   EXPECT_THAT(validate_tum("0 0 0 0 0 0 1\n"), testing::Contains(HasSubstr("7 numbers")));
   EXPECT_THAT(validate_tum("0 0 x 0 0 0 0 1\n"), testing::Contains(HasSubstr("\"x\"")));

@@ -249,7 +249,7 @@ TEST(Recording, CalibrationIsLeftToThePilotWithoutEnergy) {
   const FlightPlan plan =
       with_scanner_commands(plan_with(zenmuse_l2), Format::kmz, to_the_left, 1000.0, notes);
   EXPECT_EQ(plan.waypoints.size(), plan_with(zenmuse_l2).waypoints.size());
-  EXPECT_THAT(notes, ElementsAre(HasSubstr("calibrate the IMU of Zenmuse L2 by hand")));
+  EXPECT_THAT(notes, ElementsAre(HasSubstr("calibrate the IMU of the Zenmuse L2 by hand")));
 }
 
 TEST(Recording, SpoiledFilesAreNoticed) {

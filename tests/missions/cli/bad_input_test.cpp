@@ -74,7 +74,7 @@ std::vector<BadInput> bad_inputs() {
       {"MisspeltSection", whole + "planer: {density: 3}\n", "MISSION:3: key planer is unknown"},
       {"UnknownKey", whole + "planner: {character: good}\n",
        "MISSION:3: key planner.character is unknown; expected one of: planner.name, "
-       "planner.preset"},
+       "planner.file, planner.preset"},
       {"SectionIsNumber", whole + "planner: 3\n", "MISSION:3: key planner is a section"},
       {"TextForNumber", whole + "planner: {density: lots}\n",
        "MISSION:3: key planner.density is lots; it must be a number above 0"},

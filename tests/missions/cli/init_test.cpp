@@ -61,12 +61,14 @@ TEST(Init, WritesMissionsThatCanBeSurveyed) {
 TEST(Init, SelectsSensorBySize) {
   const tests::TestFolder folder;
   const std::string house = folder / "house.obj", mission = folder / "house.yaml",
-                    teapot = folder / "teapot.yaml";
+                    crate = folder / "crate.yaml";
   std::ofstream(house) << testing_support::make_obj({.low = {-5, -5, 0}});
   ASSERT_EQ(run_skycap({"init", house, "--out", mission}).exit_code, 0);
   EXPECT_THAT(read_content(mission), HasSubstr("lidar: \"ouster_os1_64\""));
-  ASSERT_EQ(run_skycap({"init", "builtin:teapot", "--out", teapot}).exit_code, 0);
-  EXPECT_THAT(read_content(teapot), HasSubstr("preset: intel_d435"));
+  const std::string small = folder / "small.obj";
+  std::ofstream(small) << testing_support::make_obj({.low = {-1, -1, 0}, .size = {2, 2, 2}});
+  ASSERT_EQ(run_skycap({"init", small, "--out", crate}).exit_code, 0);
+  EXPECT_THAT(read_content(crate), HasSubstr("preset: intel_d435"));
 }
 
 TEST(Init, RejectsSensorTooShortForVehicle) {

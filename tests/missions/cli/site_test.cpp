@@ -351,7 +351,7 @@ TEST_F(Site, RejectsPhotoCamerasWithoutSamplingDistance) {
   EXPECT_THAT(propose("--id DEBY_1 --gsd 0.005 --sensor intel_d435").err,
               HasSubstr("unknown photo camera intel_d435; expected one of: air_3_wide"));
   EXPECT_THAT(propose("--id DEBY_1 --gsd 0.0005 --sensor mavic_3e_wide").err,
-              HasSubstr("requires a view distance of 1.88 m, less than the stand-off"));
+              HasSubstr("requires a view distance of 1.88 m, which is less than the stand-off"));
   EXPECT_FALSE(std::filesystem::exists(folder_.path() / "house.yaml"));
 }
 

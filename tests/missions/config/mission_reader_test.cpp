@@ -86,7 +86,8 @@ TEST(MissionReader, SuggestsKeyInCorrectSection) {
             "m.yaml:4: key sensor.sigma is unknown; did you mean sensor.noise.sigma?");
   EXPECT_THAT(error_message(smallest + "colour_of_the_sky: blue\n"),
               HasSubstr("expected one of: name, seed, threads, scene, sensor, photo, planner, "
-                        "volumetric, start, limits, evaluation, paper, site, flight, scan"));
+                        "volumetric, uniform, pb_nbv, start, limits, evaluation, paper, site, "
+                        "flight, scan"));
 }
 
 // Robustness of the parser: each prefix of a valid mission, and the mission with any one byte

@@ -204,7 +204,7 @@ TEST_F(PhotoMissionTest, MakesAVerifiedFlightWithItsFiles) {
     EXPECT_GE(curve[i]["expected_completeness"], curve[i - 1]["expected_completeness"]);
   }
   const std::string sheet = geometry::read_file(out / "field_sheet.html");
-  EXPECT_THAT(sheet, HasSubstr("Focus: 9.8 m"));
+  EXPECT_THAT(sheet, HasSubstr("Focus at 9.8 m"));
   EXPECT_THAT(sheet, HasSubstr("<li>A, "));
   EXPECT_THAT(sheet, HasSubstr("<li>B, 0 photos</li>"));
   EXPECT_THAT(sheet, HasSubstr("the airspace around the model is assumed free"));

@@ -152,7 +152,7 @@ TEST_F(PythonPlanner, IsExecutedByPlanIfCommandLineNamesIt) {
   EXPECT_EQ(named.exit_code, 0) << named.err;
   const auto missing = plan({"--planner", "external"});
   EXPECT_EQ(missing.exit_code, 2);
-  EXPECT_THAT(missing.err, HasSubstr("the planner external requires planner.file"));
+  EXPECT_THAT(missing.err, HasSubstr("key planner.file is missing; the planner external requires"));
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ TEST(Trajectory, ReportsTheInvalidPose) {
     const Trajectory trajectory({{.time = 0.0}, {.time = 1.0}, {.time = 1.0}});
     FAIL() << "accepted";
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("pose 2 is not later"));
+    EXPECT_THAT(error.what(), HasSubstr("pose 2 must be later than the previous pose"));
   }
   EXPECT_THAT(testing_support::thrown_message([&] { Trajectory(std::vector<StampedPose>{}); }),
               testing::HasSubstr("has no poses"));

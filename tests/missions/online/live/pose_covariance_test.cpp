@@ -137,7 +137,7 @@ TEST(PoseCovariance, RejectsInvalidInputInOneLine) {
   EXPECT_THAT(with(2, 2, NAN, NAN), HasSubstr("finite"));
   EXPECT_THAT(with(2, 2, INFINITY, INFINITY), HasSubstr("finite"));
   EXPECT_THAT(error_message("a" + format_covariance(Matrix::Zero(), true)),
-              HasSubstr("a number is expected"));
+              HasSubstr("expected a number"));
   EXPECT_THAT(with(4, 4, -1e-9, -1e-9), HasSubstr("the variance of ry is -1e-09"));
   EXPECT_THAT(with(0, 0, 1e6, 1e6), HasSubstr("the variance of x is 1e+06; it must be from 0 to"));
   EXPECT_THAT(with(5, 5, 9.0, 9.0), HasSubstr("rad^2"));
