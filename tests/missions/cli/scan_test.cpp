@@ -217,8 +217,9 @@ TEST_F(ScanCommand, ComputesIntensitiesFromMaterials) {
   EXPECT_THAT(scan(options).err,
               HasSubstr("no material glass; its materials are (none), lead, chalk"));
   folder.write("materials.yaml", "lead: 1.1\n");
-  EXPECT_THAT(scan(options).err,
-              HasSubstr("materials.yaml:1: material lead is '1.1'; it must be glass, mirror or a number"));
+  EXPECT_THAT(
+      scan(options).err,
+      HasSubstr("materials.yaml:1: material lead is '1.1'; it must be glass, mirror or a number"));
 }
 
 // The camera faces the side at x = 1 from x = 5 and then from x = 3. All depths there are 4 and 2
