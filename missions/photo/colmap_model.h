@@ -11,18 +11,11 @@
 #include <span>
 #include <string>
 
-#include "geometry/angle.h"
 #include "missions/photo/photo_table.h"
 #include "survey/photo/photo_plan.h"
 #include "survey/photo/view_graph.h"
 
 namespace skycap::missions::photo {
-
-/// Minimum fraction of the smaller photo's samples that a pair must share to be matched, and
-/// maximum mean parallax of a pair [rad]. Other pairs take most of the matching time and seldom
-/// pass geometric verification.
-inline constexpr double min_shared_to_match = 0.2;
-inline constexpr double max_parallax_to_match = 42.0 * geometry::radians_per_degree;
 
 /// Returns cameras.txt with one camera, id 1. The model is PINHOLE without distortion, OPENCV with
 /// distortion, and FULL_OPENCV if k3 is not zero.
@@ -38,7 +31,8 @@ std::string colmap_camera_parameters(const geometry::PhotoCameraConfig& camera);
 std::string colmap_images(const survey::photo::PhotoPlan& plan,
                           const std::string& extension = ".jpg");
 
-/// Returns pairs.txt: the names of both images of each pair to match, one pair per line.
+/// Returns pairs.txt: the names of both images of each pair to match, one pair per line. See
+/// survey::photo::min_shared_to_match and max_parallax_to_match.
 std::string colmap_pairs(const survey::photo::PhotoPlan& plan,
                          std::span<const survey::photo::PhotoPair> pairs,
                          const std::string& extension = ".jpg");

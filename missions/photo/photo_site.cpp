@@ -1,5 +1,6 @@
 #include "missions/photo/photo_site.h"
 
+#include <initializer_list>
 #include <vector>
 
 #include <fmt/format.h>
@@ -24,12 +25,16 @@ void require_inside_fence(const config::MissionSetup& setup, const geometry::Mes
   const AlignedBox3d box = geometry::bounding_box(targets);
   const Vector3d centre = box.center();
   if (fence.empty() || geometry::contains(fence, centre.head<2>())) return;
+  Eigen::AlignedBox2d fenced;
+  for (const Eigen::Vector2d& corner : fence) fenced.extend(corner);
+  const Eigen::Vector2d offset = centre.head<2>() - fenced.center();
   throw Error(
       ErrorKind::bad_config,
-      fmt::format("the target is outside site.geofence: the centre of its base is at ({:.1f}, "
-                  "{:.1f}, {:.1f}) m in the mission frame; set the keys crs and offset, or the "
-                  "key place, of the prior data to the values of the program that wrote the file",
-                  centre.x(), centre.y(), box.min().z()));
+      fmt::format("the target is outside site.geofence: the centre of its base is at "
+                  "({:.1f}, {:.1f}, {:.1f}) m in the mission frame, ({:.1f}, {:.1f}) m from "
+                  "the centre of the geofence; set the keys crs and offset, or the key place, "
+                  "of the prior data to the values of the program that wrote the file",
+                  centre.x(), centre.y(), box.min().z(), offset.x(), offset.y()));
 }
 
 geometry::Mesh select_targets(const config::MissionSetup& setup) {
@@ -43,23 +48,23 @@ geometry::Mesh select_targets(const config::MissionSetup& setup) {
   return targets;
 }
 
-geometry::Mesh make_surroundings(const config::MissionSetup& setup, const geometry::Mesh& targets) {
+/// Returns the surfaces of these roles that are close enough to the targets to occlude them.
+geometry::Mesh select_near(const config::MissionSetup& setup, const geometry::Mesh& targets,
+                           std::initializer_list<Role> roles) {
   AlignedBox3d near = geometry::bounding_box(targets);
   const double reach = surroundings_reach * setup.survey().planner.view_distance;
   near.min().array() -= reach;
   near.max().array() += reach;
-  geometry::Mesh around = make_surfaces(*setup.scene().priors, Role::obstacle, near);
-  append(around, make_surfaces(*setup.scene().priors, Role::terrain, near));
-  return around;
+  geometry::Mesh selected;
+  for (const Role role : roles) {
+    append(selected, make_surfaces(*setup.scene().priors, role, near));
+  }
+  return selected;
 }
 
-geometry::Mesh make_walls(const config::MissionSetup& setup) {
-  geometry::Mesh walls = select_targets(setup);
-  AlignedBox3d near = geometry::bounding_box(walls);
-  const double reach = surroundings_reach * setup.survey().planner.view_distance;
-  near.min().array() -= reach;
-  near.max().array() += reach;
-  append(walls, make_surfaces(*setup.scene().priors, Role::obstacle, near));
+geometry::Mesh make_walls(const config::MissionSetup& setup, const geometry::Mesh& targets) {
+  geometry::Mesh walls = targets;
+  append(walls, select_near(setup, targets, {Role::obstacle}));
   return walls;
 }
 
@@ -80,7 +85,8 @@ flight::MeasuredSpaceConfig space_config(const config::MissionSetup& setup) {
 
 PhotoAirspace::PhotoAirspace(const config::MissionSetup& setup, unsigned threads)
     : setup_(setup),
-      walls_(make_walls(setup), threads),
+      targets_(select_targets(setup)),
+      walls_(make_walls(setup, targets_), threads),
       measured_(space_config(setup)),
       rules_(setup.flight().rules()),
       space_({&measured_, &rules_}) {}
@@ -99,8 +105,8 @@ bool PhotoAirspace::is_free(const Vector3d& position) const {
 survey::photo::PhotoSite photo_site(const config::MissionSetup& setup,
                                     const PhotoAirspace& airspace) {
   survey::photo::PhotoSite site;
-  site.target = select_targets(setup);
-  site.surroundings = make_surroundings(setup, site.target);
+  site.target = airspace.targets();
+  site.surroundings = select_near(setup, site.target, {Role::obstacle, Role::terrain});
   const flight::FlightOptions& flight = setup.flight();
   site.ground = [&flight](const Eigen::Vector2d& position) { return flight.ground_at(position); };
   const AlignedBox3d box = geometry::bounding_box(site.target);

@@ -18,10 +18,14 @@ namespace skycap::missions::photo {
 /// Airspace of a photo mission. Thread-safe for queries.
 class PhotoAirspace {
  public:
-  /// Keeps a reference to `setup`, whose document must have a photo camera.
+  /// Keeps a reference to `setup`, whose document must have a photo camera. Throws
+  /// Error{bad_config} if the targets have no surface or are outside site.geofence.
   PhotoAirspace(const config::MissionSetup& setup, unsigned threads);
   PhotoAirspace(const PhotoAirspace&) = delete;
   PhotoAirspace& operator=(const PhotoAirspace&) = delete;
+
+  /// Returns the surface of all targets, in the mission frame.
+  const geometry::Mesh& targets() const { return targets_; }
 
   /// Returns true if a photo may be taken at a position. The position must be at least the
   /// stand-off from all prior surfaces. With a vehicle, it must also be at least the clearance from
@@ -35,14 +39,14 @@ class PhotoAirspace {
 
  private:
   const config::MissionSetup& setup_;
+  geometry::Mesh targets_;
   geometry::MeshDistance walls_;
   flight::MeasuredSpace measured_;
   flight::KnownSpace rules_;
   flight::JointSpace space_;
 };
 
-/// Returns the target and its surroundings. `airspace` must outlive the result. Throws
-/// Error{bad_config} if the targets have no surface.
+/// Returns the target and its surroundings. `airspace` must outlive the result.
 survey::photo::PhotoSite photo_site(const config::MissionSetup& setup,
                                     const PhotoAirspace& airspace);
 

@@ -317,7 +317,6 @@ class Planner {
       observed = observed_samples(observer, result_.views, run_.threads);
     }
     result_.graph = view_graph(result_.views, observed, chosen_on_, rule, run_.threads);
-    constexpr double min_shared_to_match = 0.2;
     result_.matching_pairs =
         shared_pairs(result_.views, observed, chosen_on_, min_shared_to_match, run_.threads);
     warn_of_graph(min_degree);
@@ -325,6 +324,13 @@ class Planner {
 
   void warn_of_graph(std::size_t min_degree) {
     const bool is_unknown = options_.poses == PosesGiven::unknown;
+    const ViewGraph& graph = result_.graph;
+    if (is_unknown && graph.is_connected(min_degree) && graph.registered < graph.photos) {
+      result_.warnings.push_back(
+          std::to_string(graph.photos - graph.registered) + " of " + std::to_string(graph.photos) +
+          " photos overlap too little with two others to be registered without poses; raise "
+          "photo.max_photos or photo.gsd");
+    }
     if (result_.graph.is_connected(is_unknown ? min_degree : 0)) return;
     std::string parts;
     for (const std::size_t photos : result_.graph.parts) {

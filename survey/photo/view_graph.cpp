@@ -100,6 +100,58 @@ class Parts {
   std::vector<std::uint32_t> root_;
 };
 
+using Neighbours = std::vector<std::vector<std::uint32_t>>;
+
+/// Number of edges to registered photos that an incremental registration of a photo needs. With one
+/// edge, the photo shares no points with two registered photos, so that no point is triangulated.
+constexpr std::uint32_t edges_to_register = 2;
+
+/// Returns for each photo whether a registration that starts with this edge reaches it.
+std::vector<char> register_from(const Neighbours& neighbours, std::uint32_t first,
+                                std::uint32_t second) {
+  std::vector<char> is_registered(neighbours.size(), 0);
+  std::vector<std::uint32_t> edges(neighbours.size(), 0), queue{first, second};
+  is_registered[first] = is_registered[second] = 1;
+  while (!queue.empty()) {
+    const std::uint32_t photo = queue.back();
+    queue.pop_back();
+    for (const std::uint32_t other : neighbours[photo]) {
+      if (++edges[other] < edges_to_register || is_registered[other] != 0) continue;
+      is_registered[other] = 1;
+      queue.push_back(other);
+    }
+  }
+  return is_registered;
+}
+
+/// Returns the largest registration over all edges, the first one of several. Edges inside a
+/// registration are not tried again.
+std::vector<char> largest_registration(const Neighbours& neighbours) {
+  std::vector<std::vector<char>> all;
+  std::vector<char> largest(neighbours.size(), 0);
+  std::ptrdiff_t most = 0;
+  for (std::uint32_t i = 0; i < neighbours.size(); ++i) {
+    for (const std::uint32_t j : neighbours[i]) {
+      const bool is_known = std::ranges::any_of(
+          all, [&](const std::vector<char>& set) { return set[i] != 0 && set[j] != 0; });
+      if (j < i || is_known) continue;
+      all.push_back(register_from(neighbours, i, j));
+      const std::ptrdiff_t count = std::ranges::count(all.back(), 1);
+      if (count > most) most = count, largest = all.back();
+    }
+  }
+  return largest;
+}
+
+Neighbours make_neighbours(const ViewGraph& graph) {
+  Neighbours neighbours(graph.photos);
+  for (const PhotoPair& edge : graph.edges) {
+    neighbours[edge.first].push_back(edge.second);
+    neighbours[edge.second].push_back(edge.first);
+  }
+  return neighbours;
+}
+
 }  // namespace
 
 std::vector<PhotoPair> shared_pairs(std::span<const geometry::View> photos,
@@ -147,6 +199,8 @@ ViewGraph view_graph(std::span<const geometry::View> photos, const IndexLists& o
     ++graph.parts[graph.part.back()];
   }
   std::ranges::sort(graph.parts, std::greater());
+  graph.registered =
+      static_cast<std::size_t>(std::ranges::count(largest_registration(make_neighbours(graph)), 1));
   return graph;
 }
 
@@ -161,6 +215,7 @@ std::vector<std::uint32_t> connecting_photos(std::span<const geometry::View> pho
   Parts parts(photos.size());
   std::vector<std::uint32_t> degree = graph.degree;
   for (const PhotoPair& edge : graph.edges) parts.join(edge.first, edge.second);
+  Neighbours neighbours = make_neighbours(graph);
 
   const std::vector<PhotoNode> own = make_nodes(photos, observed, samples.size(), threads);
   const std::vector<PhotoNode> others =
@@ -218,6 +273,22 @@ std::vector<std::uint32_t> connecting_photos(std::span<const geometry::View> pho
     return choice;
   };
   std::vector<std::uint32_t> added;
+  const auto add = [&](std::uint32_t choice) {
+    const std::uint32_t number = parts.add();
+    degree.push_back(static_cast<std::uint32_t>(edges[choice].size()));
+    for (const std::uint32_t i : edges[choice]) {
+      ++degree[i];
+      parts.join(i, number);
+      neighbours[i].push_back(number);
+    }
+    neighbours.push_back(edges[choice]);
+    added.push_back(choice);
+    positions.push_back(candidates[choice].position);
+    close_near(candidates[choice].position);
+    geometry::parallel_for(candidates.size(), threads, [&](std::size_t c) {
+      if (is_open[c] != 0 && connects(others[choice], others[c])) edges[c].push_back(number);
+    });
+  };
   while (added.size() < max_photos && !is_done()) {
     std::pair<int, std::size_t> best{0, 0};  // Value, then number of edges.
     std::uint32_t choice = none;
@@ -237,18 +308,39 @@ std::vector<std::uint32_t> connecting_photos(std::span<const geometry::View> pho
     }
     if (choice == none) choice = step_towards_another_part();
     if (choice == none) break;
-    const std::uint32_t number = parts.add();
-    degree.push_back(static_cast<std::uint32_t>(edges[choice].size()));
-    for (const std::uint32_t i : edges[choice]) {
-      ++degree[i];
-      parts.join(i, number);
+    add(choice);
+  }
+
+  // Returns the candidate that registers and lets most other photos register, or none.
+  const auto best_for_registration = [&](const std::vector<char>& is_registered) {
+    std::vector<std::uint32_t> edges_to_registered(neighbours.size(), 0);
+    for (std::uint32_t i = 0; i < neighbours.size(); ++i) {
+      for (const std::uint32_t j : neighbours[i]) edges_to_registered[i] += is_registered[j] != 0;
     }
-    added.push_back(choice);
-    positions.push_back(candidates[choice].position);
-    close_near(candidates[choice].position);
-    geometry::parallel_for(candidates.size(), threads, [&](std::size_t c) {
-      if (is_open[c] != 0 && connects(others[choice], others[c])) edges[c].push_back(number);
-    });
+    std::pair<std::size_t, std::size_t> best{0, 0};  // Photos that register, photos outside.
+    std::uint32_t choice = none;
+    for (std::uint32_t c = 0; c < candidates.size(); ++c) {
+      if (is_open[c] == 0) continue;
+      std::size_t inside = 0, outside = 0, registering = 0;
+      for (const std::uint32_t i : edges[c]) {
+        if (is_registered[i] != 0) {
+          ++inside;
+        } else {
+          ++outside;
+          registering += edges_to_registered[i] + 1 >= edges_to_register;
+        }
+      }
+      const std::pair value(registering, outside);
+      if (inside >= edges_to_register && value > best) best = value, choice = c;
+    }
+    return choice;
+  };
+  while (added.size() < max_photos && is_done()) {
+    const std::vector<char> is_registered = largest_registration(neighbours);
+    if (std::ranges::count(is_registered, 0) == 0) break;
+    const std::uint32_t choice = best_for_registration(is_registered);
+    if (choice == none) break;
+    add(choice);
   }
   return added;
 }

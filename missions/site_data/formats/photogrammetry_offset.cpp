@@ -4,6 +4,8 @@
 #include <sstream>
 #include <vector>
 
+#include <pugixml.hpp>
+
 #include "geometry/io/file.h"
 #include "missions/site_data/formats/file_contents.h"
 
@@ -60,6 +62,38 @@ PhotogrammetryOffset read_pix4d(const fs::path& file) {
   return result;
 }
 
+/// Returns the offset of a file with the root element ModelMetadata and an element SRSOrigin, or
+/// nullopt for other files with this name.
+std::optional<PhotogrammetryOffset> read_model_metadata(const fs::path& file) {
+  const std::string bytes = geometry::read_file(file);
+  pugi::xml_document document;
+  if (!document.load_buffer(bytes.data(), bytes.size())) return std::nullopt;
+  const pugi::xml_node model = document.child("ModelMetadata"), origin = model.child("SRSOrigin");
+  if (!origin) return std::nullopt;
+  PhotogrammetryOffset result{file, {}, Eigen::Vector3d::Zero()};
+  const std::string system = model.child_value("SRS");
+  if (system.starts_with("EPSG:")) result.crs = system;
+  std::istringstream numbers(origin.child_value());
+  char first = 0, second = 0;
+  if (!(numbers >> result.offset.x() >> first >> result.offset.y() >> second >>
+        result.offset.z()) ||
+      first != ',' || second != ',') {
+    fail_file(file, "SRSOrigin must contain the origin as x,y,z");
+  }
+  return result;
+}
+
+/// Returns the offset of metadata.xml in the folder of the mesh or, for tiles, up to two folders
+/// above it.
+std::optional<PhotogrammetryOffset> find_model_metadata(const fs::path& folder) {
+  for (const fs::path& file : {folder / "metadata.xml", folder / ".." / "metadata.xml",
+                               folder / ".." / ".." / "metadata.xml"}) {
+    if (!is_file(file)) continue;
+    if (auto found = read_model_metadata(file.lexically_normal())) return found;
+  }
+  return std::nullopt;
+}
+
 /// Returns the only file of the folder that ends in "_offset.xyz", if there is exactly one.
 std::optional<fs::path> find_pix4d(const fs::path& folder) {
   std::vector<fs::path> found;
@@ -84,7 +118,7 @@ std::optional<PhotogrammetryOffset> find_photogrammetry_offset(const fs::path& m
   const fs::path own = folder / (mesh.stem().string() + "_offset.xyz");
   if (is_file(own)) return read_pix4d(own);
   if (const auto project = find_pix4d(folder)) return read_pix4d(*project);
-  return std::nullopt;
+  return find_model_metadata(folder);
 }
 
 }  // namespace skycap::missions::site_data

@@ -23,6 +23,10 @@ struct PhotogrammetryOffset {
 /// northing that were subtracted (ODM, opendm/types.py). Pix4D: NAME.obj with NAME_offset.xyz or
 /// PROJECT_offset.xyz, if the folder contains only one, with x, y and z.
 ///
+/// Metashape (export option), DJI Terra and iTwin Capture: metadata.xml in the folder of the mesh
+/// or up to two folders above it. The root element is ModelMetadata, with the elements SRS and
+/// SRSOrigin. A system other than EPSG:code, such as "ENU:latitude,longitude", is unknown.
+///
 /// Throws Error{bad_file} with the name and line of an invalid file.
 std::optional<PhotogrammetryOffset> find_photogrammetry_offset(const std::filesystem::path& mesh);
 

@@ -255,6 +255,15 @@ TEST_F(PhotoMissionTest, ChoosesATakeoffPointInsideTheGeofence) {
   EXPECT_EQ(photo::choose_takeoff(own.flight(), views), Eigen::Vector3d(30, 1, 0));
 }
 
+TEST_F(PhotoMissionTest, RejectsATargetOutsideTheGeofenceWithItsOffset) {
+  const char* fence = "site: {geofence: [[80, 30], [120, 30], [120, 70], [80, 70]], ";
+  const config::MissionSetup setup = read(with(mission_yaml, "site: {", fence));
+  EXPECT_THAT([&] { photo::PhotoAirspace(setup, 1); },
+              testing::ThrowsMessage<Error>(
+                  HasSubstr("m of the mission frame, (-100.0, -50.0) m from the centre of the "
+                            "geofence; set crs and offset, or place")));
+}
+
 TEST_F(PhotoMissionTest, StaysOutsideOfTheUnknownBoxWhenSpaceIsMeasured) {
   const config::MissionSetup setup =
       read(with(with(mission_yaml, "free_space: assumed", "free_space: measured"),

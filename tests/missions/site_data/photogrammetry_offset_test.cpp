@@ -84,6 +84,34 @@ TEST_F(PhotogrammetryOffsetTest, IsReadFromPix4dWithTheCrsOfTheMission) {
   EXPECT_NEAR((box_of(house).min() - box_of(reference).min()).norm(), 1.0, 0.01);
 }
 
+std::string model_metadata(const std::string& system, const std::string& origin) {
+  return R"(<?xml version="1.0" encoding="utf-8"?><ModelMetadata version="1"><SRS>)" + system +
+         "</SRS><SRSOrigin>" + origin + "</SRSOrigin></ModelMetadata>";
+}
+
+TEST_F(PhotogrammetryOffsetTest, IsReadFromMetadataXml) {
+  write("model/Data/tile_1/tile_1.obj", make_obj(local_));
+  write("model/metadata.xml", model_metadata("EPSG:25832", "676000,5403000,0"));
+  write("cube.gml", make_citygml(cube_));
+  Source reference = source("cube.gml");
+  reference.vertical = HeightDatum::ellipsoid;
+  EXPECT_LT((box_of(source("model/Data/tile_1/tile_1.obj")).min() - box_of(reference).min()).norm(),
+            0.01);
+  // A file with the same name in the folder of the mesh, but of another program.
+  write("model/Data/tile_1/metadata.xml", "<metadata><SRSOrigin>1,2,3</SRSOrigin></metadata>");
+  const fs::path tile = folder_.path() / "model/Data/tile_1/tile_1.obj";
+  EXPECT_EQ(find_photogrammetry_offset(tile)->offset, Vector3d(676000, 5403000, 0));
+
+  write("model/metadata.xml", model_metadata("ENU:48.7,11.4", "0,0,0"));
+  EXPECT_THAT([&] { box_of(source("model/Data/tile_1/tile_1.obj")); },
+              testing::ThrowsMessage<Error>(
+                  HasSubstr("has the coordinate offset of metadata.xml but no coordinate")));
+  write("model/metadata.xml", model_metadata("EPSG:25832", "676000 5403000 0"));
+  EXPECT_THAT([&] { find_photogrammetry_offset(tile); },
+              testing::ThrowsMessage<Error>(
+                  HasSubstr("metadata.xml: SRSOrigin must contain the origin as x,y,z")));
+}
+
 TEST_F(PhotogrammetryOffsetTest, RejectsInvalidFiles) {
   write("a_geo.obj", make_obj(local_));
   write("coords.txt", "WGS84 UTM 61N\n1 2\n");

@@ -74,5 +74,28 @@ TEST_F(PhotosOfAWall, AreConnectedByPhotosBetweenThem) {
   EXPECT_LE(added.size(), 12U);
 }
 
+TEST_F(PhotosOfAWall, RegisterWithTwoEdgesToRegisteredPhotos) {
+  // Photos 2 m apart share 82%, photos 4 m apart 63%, photos 6 m apart 45%. Only 18 and 22 connect
+  // both groups.
+  const std::vector<View> photos = photos_at({12, 14, 16, 18, 22, 24, 26, 28});
+  const ViewGraph graph = view_graph(photos, observed(photos), samples_, {}, 1);
+  EXPECT_EQ(graph.parts.size(), 1U);
+  EXPECT_EQ(graph.registered, 4U);
+  const std::vector<View> chain = photos_at({10, 14, 18, 22});
+  EXPECT_EQ(view_graph(chain, observed(chain), samples_, {}, 1).registered, 2U);
+  const std::vector<View> single = photos_at({10});
+  EXPECT_EQ(view_graph(single, observed(single), samples_, {}, 1).registered, 0U);
+
+  std::vector<double> positions;
+  for (double x = 5.5; x < 55.0; x += 1.0) positions.push_back(x);
+  const std::vector<View> candidates = photos_at(positions);
+  const std::vector<std::uint32_t> added = connecting_photos(
+      photos, observed(photos), candidates, observed(candidates), samples_, {}, 1, 0.4, 100, 2);
+  std::vector<View> all = photos;
+  for (const std::uint32_t c : added) all.push_back(candidates[c]);
+  EXPECT_EQ(view_graph(all, observed(all), samples_, {}, 1).registered, all.size());
+  EXPECT_LE(added.size(), 2U);
+}
+
 }  // namespace
 }  // namespace skycap::survey::photo
