@@ -52,6 +52,7 @@ Modules architecture() {
   add("sim/sensors", {"sim/scene"});
 
   add("survey", {});
+  add("survey/inspection", {"survey"});
   add("survey/photo", {"survey"});
   add("survey/see", {"survey"});
   add("survey/surfel/raster", {"survey"});
