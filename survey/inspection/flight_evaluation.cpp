@@ -211,9 +211,15 @@ void evaluate_motion(std::span<const FlightSample> flight, const EvaluationOptio
   }
   constexpr double first = 0.001, second = 0.01, third = 0.04, angle = 1e-6;
   const auto velocities = differences(positions, dt);
-  for (const Vector3d& velocity : velocities) result.length += velocity.norm() * dt;
+  for (const Vector3d& velocity : velocities) {
+    result.length += velocity.norm() * dt;
+    result.max_ascent = std::max(result.max_ascent, velocity.z());
+    result.max_descent = std::max(result.max_descent, -velocity.z());
+  }
   const auto accelerations = differences(velocities, dt);
   const MotionLimits& limits = options.limits;
+  result.keeps_vertical_speed = result.max_ascent <= limits.ascent * (1.0 + first) &&
+                                result.max_descent <= limits.descent * (1.0 + first);
   result.speed = limit_use(velocities, limits.speed, first);
   result.acceleration = limit_use(accelerations, limits.acceleration, second);
   result.jerk = limit_use(differences(accelerations, dt), limits.jerk, third);
@@ -250,8 +256,8 @@ void InspectionCamera::validate() const {
 }
 
 bool FlightEvaluation::keeps_limits() const {
-  return keeps_pitch && speed.is_kept() && acceleration.is_kept() && jerk.is_kept() &&
-         yaw_rate.is_kept() && yaw_acceleration.is_kept() && pitch_rate.is_kept();
+  return keeps_pitch && keeps_vertical_speed && speed.is_kept() && acceleration.is_kept() &&
+         jerk.is_kept() && yaw_rate.is_kept() && yaw_acceleration.is_kept() && pitch_rate.is_kept();
 }
 
 NearestDistance nearest_distance(std::span<const FlightSample> flight,

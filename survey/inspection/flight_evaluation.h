@@ -57,7 +57,9 @@ struct FlightEvaluation {
   double nearest_time = 0.0;          ///< Time of `nearest` [s].
   double min_height = 0.0;            ///< Lowest z [m].
   LimitUse speed, acceleration, jerk, yaw_rate, yaw_acceleration, pitch_rate;
-  double min_pitch = 0.0, max_pitch = 0.0;  ///< [rad]
+  double min_pitch = 0.0, max_pitch = 0.0;     ///< [rad]
+  double max_ascent = 0.0, max_descent = 0.0;  ///< Largest vertical speeds [m/s].
+  bool keeps_vertical_speed = true;
   bool keeps_pitch = true;
 
   double share(std::size_t rule) const {

@@ -35,6 +35,8 @@ void MotionLimits::validate() const {
   require(yaw_rate, "yaw_rate");
   require(yaw_acceleration, "yaw_acceleration");
   require(pitch_rate, "pitch_rate");
+  require(ascent, "ascent");
+  require(descent, "descent");
 }
 
 Smoothing make_smoothing(const MotionLimits& limits) {
@@ -43,6 +45,8 @@ Smoothing make_smoothing(const MotionLimits& limits) {
   constexpr double turn = 1.5;
   Smoothing smoothing;
   smoothing.speed = limits.speed;
+  smoothing.ascent = limits.ascent;
+  smoothing.descent = limits.descent;
   smoothing.longer = turn * limits.speed / limits.acceleration;
   smoothing.shorter = limits.acceleration / limits.jerk;
   if (smoothing.shorter > smoothing.longer) {
@@ -54,7 +58,9 @@ Smoothing make_smoothing(const MotionLimits& limits) {
 }
 
 double leg_duration(const Vertex& from, const Vertex& to, const Smoothing& smoothing) {
-  return std::max({(to.position - from.position).norm() / smoothing.speed,
+  const double climb = to.position.z() - from.position.z();
+  return std::max({(to.position - from.position).norm() / smoothing.speed, climb / smoothing.ascent,
+                   -climb / smoothing.descent,
                    std::abs(turn_between(from.yaw, to.yaw)) / smoothing.yaw_rate,
                    std::abs(to.pitch - from.pitch) / smoothing.pitch_rate, min_leg_duration}) +
          from.delay;

@@ -30,6 +30,8 @@ struct MotionLimits {
   double yaw_rate = 1.0471975511965976;          ///< [rad/s]
   double yaw_acceleration = 0.5235987755982988;  ///< [rad/s^2]
   double pitch_rate = 0.7853981633974483;        ///< [rad/s]
+  double ascent = 2.0;                           ///< Vertical speed upwards [m/s].
+  double descent = 2.0;                          ///< Vertical speed downwards [m/s].
 
   /// Throws Error{bad_config} naming the first limit that is not positive.
   void validate() const;
@@ -42,6 +44,8 @@ struct Smoothing {
   double yaw_rate = 0.7853981633974483;    ///< Maximum yaw rate of the polygon [rad/s].
   double pitch_rate = 0.7853981633974483;  ///< Maximum pitch rate of the polygon [rad/s].
   double speed = 2.0;                      ///< Speed of the polygon [m/s].
+  double ascent = 2.0;                     ///< Its vertical speed upwards [m/s].
+  double descent = 2.0;                    ///< Its vertical speed downwards [m/s].
 
   double reach() const { return 0.5 * (shorter + longer); }  ///< a [s]
   double inner() const { return 0.5 * (longer - shorter); }  ///< b [s]
