@@ -199,11 +199,12 @@ std::vector<Key> conduct_keys() {
       choice_key("flight.order", {"shortest", "survey"}, flight(&flight::FlightOptions::order),
                  "Order of the views in the exported mission: shortest tour found, or order of the "
                  "survey."),
-      choice_key("flight.free_space", {"measured", "assumed"}, section(&FlightSection::free_space),
-                 "Free space of a mission with a photo camera, which measures none. measured: only "
-                 "outside of flight.unknown_box. assumed: everywhere beyond the clearance and the "
-                 "uncertainty of prior data; the pilot must check the airspace for trees, wires "
-                 "and anything that the prior data does not contain."),
+      choice_key(
+          "flight.free_space", {"measured", "assumed"}, section(&FlightSection::free_space),
+          "Free space of a photo mission or an inspection, which measure none. measured: only "
+          "outside of flight.unknown_box. assumed: everywhere beyond the clearance and the "
+          "uncertainty of prior data; the pilot must check the airspace for trees, wires "
+          "and anything that the prior data does not contain."),
       choice_key("flight.style", {"stop", "blend", "smooth", "fly-through"},
                  flight(&flight::FlightOptions::style),
                  "Flight style at the corners of a leg. stop: stop in each corner. blend: round "

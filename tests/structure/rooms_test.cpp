@@ -132,6 +132,9 @@ Modules architecture() {
   add_library({"photo"}, {"sim", "survey", "flight"},
               {"package", "wizard", "config", "scan", "simulation", "evaluation", "session",
                "scene", "site_data", "support"});
+  add_library({"inspection"}, {"sim", "survey", "flight"},
+              {"package", "config", "scan", "simulation", "evaluation", "session", "scene",
+               "site_data", "support"});
   add_library({"report"}, {"sim", "survey", "flight"},
               {"package", "config", "scan", "simulation", "evaluation", "session", "scene",
                "site_data", "support"});
@@ -142,7 +145,7 @@ Modules architecture() {
               {"package", "config", "scan", "simulation", "evaluation", "session", "scene",
                "site_data", "support"});
   add_library({"cli", "cli/clouds"}, {"sim", "survey", "flight"},
-              {"report", "batch", "photo", "wizard", "package", "config", "online", "scan",
+              {"report", "batch", "photo", "inspection", "wizard", "package", "config", "online", "scan",
                "simulation", "evaluation", "session", "scene", "site_data", "support"});
   // Like a user of the library: public headers only.
   add("python",
