@@ -14,6 +14,7 @@
 #include "geometry/io/cloud_io.h"
 #include "missions/config/mission_document.h"
 #include "missions/inspection/flight_file.h"
+#include "missions/package/field_sheet.h"
 #include "missions/package/flight_files.h"
 #include "missions/package/package.h"
 #include "missions/package/settings.h"

@@ -155,8 +155,7 @@ TEST_F(InspectionMissionTest, PlansAroundAPointCloud) {
   geometry::write_cloud(folder_.path() / "tower.ply", columns);
   const config::MissionSetup setup = read(R"(
 inspection: {range: 7, cloud: tower.ply, share: 0.8, moves: 1500, searches: 1}
-flight: {vehicle: mavic_3e, free_space: assumed, position_error: 0.1, clearance: 2,
-         unknown_box: {min: [-3, -3, 0], max: [3, 3, 6]}}
+flight: {vehicle: mavic_3e, free_space: assumed, position_error: 0.1, clearance: 2}
 )");
   const inspection::InspectionMission mission = plan(setup);
   double nearest = 1e9;
