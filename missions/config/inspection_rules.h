@@ -7,8 +7,8 @@
 namespace skycap::missions::config {
 
 /// Checks the keys of `inspection` against the others. Throws the error of
-/// MissionDocument::reject() if they are used without inspection.range, or if the mission has no
-/// vehicle, no structure, or a sensor that is not a camera.
+/// MissionDocument::reject() if they are used without inspection.range. Also throws it if the
+/// mission has no vehicle, no structure, or a sensor that is not a camera.
 void check_inspection(const MissionDocument& document);
 
 /// Derives the limits of motion, the spacing of points and the view distance of an inspection.

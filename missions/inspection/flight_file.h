@@ -11,8 +11,8 @@
 namespace skycap::missions::inspection {
 
 /// Returns CSV with the header `t,x,y,z,yaw,pitch` after comment lines that state the meaning. Time
-/// in seconds from the start, position in metres in the mission frame, yaw counter-clockwise from
-/// east (+x) and continuous, pitch 0 at the horizon and positive upwards [rad].
+/// is in seconds from the start, position in metres in the mission frame. Yaw is counter-clockwise
+/// from east (+x) and continuous. Pitch is 0 at the horizon and positive upwards [rad].
 std::string write_flight_csv(std::span<const survey::inspection::FlightSample> flight);
 
 /// Reads a flight of any program: six numbers per line in the order t x y z yaw pitch, separated by

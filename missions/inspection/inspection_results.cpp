@@ -83,9 +83,8 @@ std::vector<flight::TimedState> timed_states(const InspectionPlan& plan) {
 /// Formats that cannot express a continuous flight, with the reason.
 Json formats_json() {
   constexpr const char* stops =
-      "waypoint missions reach each waypoint at rest or round its corner by the autopilot's own "
-      "law, so that the flown curve is not the verified one; use setpoints.ned.csv with an "
-      "offboard controller";
+      "waypoint missions stop at a waypoint or round it by the autopilot's own law, so that the "
+      "flown curve is not the verified one; use setpoints.ned.csv with an offboard controller";
   return {{"plan", stops}, {"waypoints", stops}, {"kmz", stops}, {"litchi", stops}};
 }
 

@@ -24,9 +24,9 @@ std::string plan_text(const config::MissionSetup& setup, const InspectionMission
 /// Returns a line "Warning: ..." for each warning.
 std::string warnings_text(const InspectionMission& mission);
 
-/// Stages summary.json, the flight (inspection.csv, setpoints.enu.csv, setpoints.ned.csv and
-/// camera.tum) and structure.ply, the points of the structure with the rules by which they are
-/// seen. Files of earlier runs that do not belong to an inspection are removed by the commit.
+/// Stages summary.json, the flight, and structure.ply: the points of the structure with the rules
+/// by which they are seen. The files of the flight are inspection.csv, setpoints.enu.csv,
+/// setpoints.ned.csv and camera.tum. The commit removes files of earlier runs of another kind.
 void stage_inspection_mission(const config::MissionSetup& setup, const InspectionMission& mission,
                               geometry::OutputFolder& folder);
 

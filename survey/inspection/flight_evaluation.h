@@ -51,11 +51,12 @@ struct FlightEvaluation {
   PerRule<std::size_t> seen{};           ///< Points seen at least once by each rule.
   std::vector<std::uint8_t> rules_seen;  ///< Per point: bits 0 to 2 for rules A to C.
   ViewsPerPoint views;
-  double median_view_distance = 0.0;  ///< Of the nearest view of each point by rule C [m].
-  double nearest = 0.0;               ///< Smallest distance from a point of the structure [m].
-  double nearest_surface = 0.0;       ///< Smallest distance from a disc of the structure [m].
-  double nearest_time = 0.0;          ///< Time of `nearest` [s].
-  double min_height = 0.0;            ///< Lowest z [m].
+  double median_view_distance =
+      0.0;                       ///< Median of the smallest view distance of points by rule C [m].
+  double nearest = 0.0;          ///< Smallest distance from a point of the structure [m].
+  double nearest_surface = 0.0;  ///< Smallest distance from a disc of the structure [m].
+  double nearest_time = 0.0;     ///< Time of `nearest` [s].
+  double min_height = 0.0;       ///< Lowest z [m].
   LimitUse speed, acceleration, jerk, yaw_rate, yaw_acceleration, pitch_rate;
   double min_pitch = 0.0, max_pitch = 0.0;     ///< [rad]
   double max_ascent = 0.0, max_descent = 0.0;  ///< Largest vertical speeds [m/s].

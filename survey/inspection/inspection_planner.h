@@ -1,9 +1,9 @@
 /// Planner of inspection flights: a continuous flight that sees a known structure in the fewest
 /// seconds, without stops, at a clearance.
 ///
-/// The algorithm: points of the structure with normals and discs, a distance field, a first tour
-/// through viewpoints by greedy cover, and several independent searches over the polygon of a
-/// smoothed route (route_search.h), of which the shortest verified flight is returned.
+/// The structure is a set of points with normals and discs. A first tour joins viewpoints of a
+/// greedy cover. Several independent searches (route_search.h) change the polygon of a smoothed
+/// route, with seconds as the cost. The shortest verified flight is returned.
 #pragma once
 
 #include <cstddef>
@@ -46,7 +46,7 @@ using SegmentDistance =
 /// Structure and the space around it. Mission frame [m], z up.
 struct InspectionSite {
   std::vector<Eigen::Vector3f> points;
-  std::vector<Eigen::Vector3f> normals;  ///< Of the points. Empty: computed from them.
+  std::vector<Eigen::Vector3f> normals;  ///< Normals of the points. Empty: computed from them.
   /// Obstacles, including the structure. Null: the points of the structure.
   ObstacleDistance distance;
   FreePosition is_free;              ///< Null: at least the clearance from all obstacles.
@@ -81,9 +81,9 @@ struct InspectionPlan {
 inline constexpr double sample_interval = 0.1;
 
 /// Plans an inspection flight. The result depends only on options, site and seed. Throws
-/// Error{bad_config} for invalid options and if the range does not exceed the clearance,
-/// Error{bad_geometry} if nothing is reachable or visible, or if no flight within the budget keeps
-/// the limits and the clearance, and Interrupted after a stop request.
+/// Error{bad_config} for invalid options, and if the range does not exceed the clearance. Throws
+/// Error{bad_geometry} if nothing is reachable or visible, or if no flight of the searches keeps
+/// the limits and the clearance. Throws Interrupted after a stop request.
 InspectionPlan plan_inspection(const InspectionOptions& options, const InspectionSite& site,
                                const InspectionRun& run);
 

@@ -37,7 +37,7 @@ class SightCells {
   SightCells& operator=(const SightCells&) = delete;
 
   /// Appends the sights of a view among the first `targets` points, ascending by point. Sights
-  /// below `min_level` are left out.
+  /// below `min_level` are skipped.
   void add_view(const Eigen::Vector3d& position, double yaw, double pitch, std::size_t targets,
                 std::uint32_t min_level, std::vector<PointSight>& sights) const;
 
