@@ -25,6 +25,7 @@ using Eigen::Vector3f;
 /// Structures with more points than this use a larger spacing, because the search keeps the points
 /// in range of each position in memory.
 constexpr std::size_t max_points = 150'000;
+constexpr std::size_t max_obstacle_points = 500'000;
 
 /// Returns the first point of each voxel, in the order of the points.
 std::vector<Vector3f> downsampled(const std::vector<Vector3f>& points, double voxel) {
@@ -36,6 +37,15 @@ std::vector<Vector3f> downsampled(const std::vector<Vector3f>& points, double vo
     };
     if (used.emplace(cell(0), cell(1), cell(2)).second) result.push_back(point);
   }
+  return result;
+}
+
+/// Downsamples with the smallest voxel, at least `voxel`, that leaves at most `max_count` points.
+std::vector<Vector3f> downsampled_to(const std::vector<Vector3f>& points, double voxel,
+                                     std::size_t max_count) {
+  constexpr double coarser = 1.25;
+  std::vector<Vector3f> result = downsampled(points, voxel);
+  while (result.size() > max_count) result = downsampled(points, voxel *= coarser);
   return result;
 }
 
@@ -56,16 +66,13 @@ InspectionSpace::InspectionSpace(const config::MissionSetup& setup)
 
 void InspectionSpace::add_cloud(const config::MissionSetup& setup,
                                 const std::filesystem::path& file) {
-  std::vector<Vector3f> points = geometry::read_cloud(file).positions;
-  // Thin clouds are used as they are; dense ones only slow the search down.
-  double voxel = setup.document->inspection.spacing.value();
-  if (points.size() > max_points || setup.document->has("inspection.spacing")) {
-    const std::vector<Vector3f> all = std::move(points);
-    points = downsampled(all, voxel);
-    constexpr double coarser = 1.25;
-    while (points.size() > max_points) points = downsampled(all, voxel *= coarser);
-  }
-  const survey::inspection::StructureCloud cloud = survey::inspection::make_structure_cloud(points);
+  const std::vector<Vector3f> points = geometry::read_cloud(file).positions;
+  const double spacing = setup.document->inspection.spacing.value();
+  points_ = downsampled_to(points, spacing, max_points);
+  // The clearance is kept from as many points as possible, so that the gaps between them are small.
+  constexpr double finer = 0.1;
+  const survey::inspection::StructureCloud cloud = survey::inspection::make_structure_cloud(
+      downsampled_to(points, finer * spacing, max_obstacle_points));
   flight::PriorObstacleConfig obstacle;
   obstacle.name = "the structure " + file.filename().string();
   obstacle.points = cloud.points;
@@ -73,7 +80,6 @@ void InspectionSpace::add_cloud(const config::MissionSetup& setup,
   // probability of exp(-6), if the points are random.
   obstacle.point_radius = static_cast<double>(cloud.median_radius);
   flight_.airspace.priors.push_back(std::make_shared<const flight::PriorObstacle>(obstacle));
-  points_ = cloud.points;
 }
 
 void InspectionSpace::add_targets(const config::MissionSetup& setup) {
