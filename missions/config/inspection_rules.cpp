@@ -26,7 +26,7 @@ void complete_limit(const MissionDocument& document, const char* key, double usu
   if (!limit) limit = std::min(usual, of_vehicle);
   constexpr double rounding = 1.0 + 1e-9;
   if (*limit > of_vehicle * rounding) {
-    document.reject(key, "exceeds the limit of the vehicle '" +
+    document.reject(key, "must be at most the limit of the vehicle '" +
                              document.flight.options.vehicle_name + "'; lower it");
   }
 }

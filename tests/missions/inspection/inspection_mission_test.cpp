@@ -169,8 +169,8 @@ flight: {vehicle: mavic_3e, free_space: assumed, position_error: 0.1, clearance:
 }
 
 TEST_F(InspectionMissionTest, DerivesLimitsFromTheVehicle) {
-  const auto options =
-      config::inspection_options(*read(block_yaml, {{"flight.vehicle", "generic"}}).document);
+  const auto options = config::inspection_options(
+      *read(block_yaml, {{"--set", "flight.vehicle", "generic"}}).document);
   EXPECT_NEAR(options.limits.speed, 2.0, 1e-12);
   EXPECT_NEAR(options.limits.yaw_acceleration, 0.349, 1e-3) << "of PX4, less than 30 degrees/s^2";
   EXPECT_NEAR(options.limits.descent, 1.5, 1e-12);
@@ -179,18 +179,23 @@ TEST_F(InspectionMissionTest, DerivesLimitsFromTheVehicle) {
 
 TEST_F(InspectionMissionTest, RejectsKeysThatDoNotFitAnInspection) {
   EXPECT_THAT(
-      message({{"flight.vehicle", "none"}}),
+      message({{"--set", "flight.vehicle", "none"}}),
       EndsWith("key inspection.range requires a vehicle, whose limits the flight keeps; set "
                "flight.vehicle"));
-  EXPECT_THAT(message({{"flight.free_space", "measured"}}),
+  EXPECT_THAT(message({{"--set", "flight.free_space", "measured"}}),
               HasSubstr("key inspection.range requires flight.free_space: assumed"));
-  EXPECT_THAT(message({{"photo.gsd", "0.01"}}),
+  EXPECT_THAT(message({{"--set", "photo.gsd", "0.01"}}),
               HasSubstr("key photo.gsd conflicts with inspection.range"));
-  EXPECT_THAT(message({{"inspection.max_speed", "40"}}),
-              HasSubstr("key inspection.max_speed exceeds the limit of the vehicle"));
-  EXPECT_THAT(
-      thrown_message([&] { read("inspection: {share: 0.9}\nscene: {model: builtin:teapot}"); }),
-      HasSubstr("key inspection.share requires inspection.range"));
+  EXPECT_THAT(message({{"--set", "inspection.max_speed", "40"}}),
+              HasSubstr("key inspection.max_speed must be at most the limit of the vehicle"));
+  constexpr const char* without_range = R"(
+sensor: {photo_camera: mavic_3e_wide}
+inspection: {share: 0.9}
+photo: {gsd: 0.01}
+prior: [{file: block.obj, role: target, uncertainty: 0.1}]
+)";
+  EXPECT_THAT(thrown_message([&] { read(without_range); }),
+              HasSubstr("key inspection.share requires inspection.range"));
 }
 
 TEST_F(InspectionMissionTest, ReadsFlightsOfOtherPrograms) {
