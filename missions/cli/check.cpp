@@ -15,11 +15,13 @@
 #include "geometry/surfaces/mesh.h"
 #include "missions/cli/check_live.h"
 #include "missions/cli/commands.h"
+#include "missions/config/inspection_rules.h"
 #include "missions/config/mission_document.h"
 #include "missions/config/photo_rules.h"
 #include "missions/config/resolve.h"
 #include "missions/config/setup_text.h"
 #include "missions/evaluation/survey_scene.h"
+#include "missions/inspection/inspection_site.h"
 #include "missions/package/fleet/timetable_verification.h"
 #include "missions/package/fleet_mission.h"
 #include "missions/package/package.h"
@@ -252,6 +254,27 @@ int check_photos(const CheckOptions& options, const config::MissionSetup& setup,
   return 0;
 }
 
+/// Prints what an inspection is planned for, after reading the structure.
+int check_inspection(const CheckOptions& options, const config::MissionSetup& setup,
+                     const Console& console) {
+  if (options.route) {
+    throw Error(ErrorKind::bad_usage,
+                "--route conflicts with inspection.range; use skycap evaluate --flight " +
+                    options.route->string() + " --model " + options.mission.string());
+  }
+  const survey::inspection::InspectionOptions inspection =
+      config::inspection_options(*setup.document);
+  inspection.validate();
+  const inspection::InspectionSpace space(setup);
+  console.out << fmt::format(
+                     "{}: no problems found\n  inspection {} points, views from at most {:.4g} m, "
+                     "clearance {:.4g} m, {:.4g} m/s\n",
+                     options.mission.string(), space.site().points.size(), inspection.camera.range,
+                     inspection.clearance, inspection.limits.speed)
+              << std::flush;
+  return 0;
+}
+
 }  // namespace
 
 int check(const CheckOptions& options, const Console& console) {
@@ -261,6 +284,7 @@ int check(const CheckOptions& options, const Console& console) {
   }
   const auto begun = std::chrono::steady_clock::now();
   const config::MissionSetup setup = read_shown(config::read_live_mission, options, console);
+  if (setup.document->is_inspection()) return check_inspection(options, setup, console);
   if (setup.document->is_photo()) {
     if (!options.route) return check_photos(options, setup, console);
     const geometry::Mesh targets =

@@ -253,12 +253,15 @@ void add_calibrate(CLI::App& app, const Console& console, Action& action) {
 
 void add_evaluate(CLI::App& app, const Console& console, Action& action) {
   CLI::App* command =
-      app.add_subcommand("evaluate", "Compare a point cloud or mesh with a reference model");
+      app.add_subcommand("evaluate", "Evaluate a point cloud, a mesh or an inspection flight");
   const auto options = std::make_shared<EvaluateOptions>();
   CLI::App* what = command->add_option_group("evaluated data");
   what->add_option("--cloud", options->cloud, "Point cloud: .ply, .pcd, .las, .laz, .e57 or .xyz");
   what->add_option("--mesh", options->mesh,
                    "Mesh instead of a cloud, for example from skycap reconstruct");
+  what->add_option("--flight", options->flight,
+                   "Flight instead of a cloud (t,x,y,z,yaw,pitch as CSV); --model is an inspection "
+                   "mission");
   what->require_option(1);
   command
       ->add_option("--model", options->model,

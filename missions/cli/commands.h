@@ -199,6 +199,7 @@ int scan(const ScanCommandOptions& options, const Console& console);
 struct EvaluateOptions {
   std::filesystem::path cloud;     ///< point cloud to evaluate; conflicts with `mesh`
   std::filesystem::path mesh;      ///< mesh to evaluate, at points sampled on its surface
+  std::filesystem::path flight;    ///< flight around a structure to evaluate, instead of a cloud
   std::string model;               ///< builtin:NAME, model:NAME, mesh file or mission file
   std::optional<double> distance;  ///< coverage distance r_d [m]; default: from the mission file
   std::size_t samples = 100'000;
@@ -214,8 +215,9 @@ struct EvaluateOptions {
   bool is_quiet = false;
 };
 
-/// Prints the coverage and accuracy of a cloud or mesh with respect to a model. Returns exit code 1
-/// if a piece is missing.
+/// Prints the coverage and accuracy of a cloud or mesh with respect to a model, or of a flight with
+/// respect to an inspection mission. Returns exit code 1 if a piece is missing, or if the flight
+/// exceeds a limit or violates the clearance.
 int evaluate(const EvaluateOptions& options, const Console& console);
 
 struct ReconstructOptions {

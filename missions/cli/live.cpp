@@ -43,6 +43,10 @@ int to_exit_code(const online::Proposal& proposal) {
 template <typename Options>
 config::MissionSetup read_live(const Options& options, const Console& console) {
   config::MissionSetup setup = read_shown(config::read_live_mission, options, console);
+  if (setup.document->is_inspection()) {
+    setup.document->reject("inspection.range",
+                           "inspections are planned before the flight, not live; use skycap plan");
+  }
   if (setup.document->is_photo()) {
     setup.document->reject("sensor.photo_camera",
                            "photos are planned before the flight, not live; use skycap plan");

@@ -16,6 +16,9 @@
 #include "missions/config/mission_document.h"
 #include "missions/config/resolve.h"
 #include "missions/evaluation/survey_scene.h"
+#include "missions/inspection/inspection_mission.h"
+#include "missions/inspection/inspection_results.h"
+#include "missions/inspection/inspection_site.h"
 #include "missions/package/flight_report.h"
 #include "missions/package/package.h"
 #include "missions/package/pilot_text.h"
@@ -221,15 +224,40 @@ int plan_photos(const PlanOptions& options, const config::MissionSetup& setup,
   return 0;
 }
 
+/// A continuous flight around a known structure: nothing is measured or simulated.
+int plan_inspection(const PlanOptions& options, const config::MissionSetup& setup,
+                    geometry::OutputFolder& folder, const Console& console) {
+  if (options.trials > 0 || options.control_points) {
+    throw Error(ErrorKind::bad_usage,
+                "--trials and --control-points conflict with inspection.range; remove them");
+  }
+  ProgressLine progress(console, options.is_quiet);
+  const auto report = [&](const std::string& what) { progress.show(setup.name + ": " + what); };
+  report("reading the structure");
+  const inspection::InspectionSpace space(setup);
+  const inspection::InspectionMission mission =
+      inspection::plan_inspection_mission(setup, space, console.stop, report);
+  report("writing " + folder.path().string());
+  inspection::stage_inspection_mission(setup, mission, folder);
+  folder.commit();
+  progress.clear();
+  if (options.is_quiet) return 0;
+  console.out << inspection::plan_text(setup, mission) << "  results   " << folder.path().string()
+              << "\n"
+              << inspection::warnings_text(mission) << std::flush;
+  return 0;
+}
+
 }  // namespace
 
 int plan(const PlanOptions& options, const Console& console) {
   const config::MissionSetup setup = read_shown(config::read_mission, options, console);
   geometry::OutputFolder folder(
       options.out.value_or(std::filesystem::path("results") / setup.name));
-  if (setup.document->is_photo()) {
+  if (setup.document->is_for_known_target()) {
     try {
-      return plan_photos(options, setup, folder, console);
+      return setup.document->is_inspection() ? plan_inspection(options, setup, folder, console)
+                                             : plan_photos(options, setup, folder, console);
     } catch (const Error& error) {
       throw Error(error.kind(), options.mission.string() + ": " + error.what());
     }

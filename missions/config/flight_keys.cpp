@@ -200,10 +200,10 @@ std::vector<Key> conduct_keys() {
                  "Order of the views in the exported mission: shortest tour found, or order of the "
                  "survey."),
       choice_key("flight.free_space", {"measured", "assumed"}, section(&FlightSection::free_space),
-                 "Free space in a mission with a photo camera, which does not measure free space. "
+                 "Free space in a photo mission or an inspection, which do not measure free space. "
                  "measured: only outside flight.unknown_box. assumed: everywhere beyond the "
-                 "clearance and the "
-                 "uncertainty of prior data; the pilot must check the airspace for trees, wires "
+                 "clearance and the uncertainty of prior data; the pilot must check the airspace "
+                 "for trees, wires "
                  "and anything that the prior data does not contain."),
       choice_key("flight.style", {"stop", "blend", "smooth", "fly-through"},
                  flight(&flight::FlightOptions::style),

@@ -13,6 +13,7 @@ std::vector<Key> general_keys();
 std::vector<Key> scene_keys();
 std::vector<Key> sensor_keys();
 std::vector<Key> photo_keys();
+std::vector<Key> inspection_keys();
 std::vector<Key> planner_keys();
 std::vector<Key> volumetric_keys();
 std::vector<Key> uniform_keys();
@@ -32,10 +33,11 @@ struct KeySection {
   std::vector<Key> (*keys)();
 };
 
-inline constexpr std::array<KeySection, 17> key_sections{{{"", general_keys},
+inline constexpr std::array<KeySection, 18> key_sections{{{"", general_keys},
                                                           {"scene", scene_keys},
                                                           {"sensor", sensor_keys},
                                                           {"photo", photo_keys},
+                                                          {"inspection", inspection_keys},
                                                           {"planner", planner_keys},
                                                           {"volumetric", volumetric_keys},
                                                           {"uniform", uniform_keys},

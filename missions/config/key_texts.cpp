@@ -31,8 +31,10 @@ bool decides_what_is_attainable(std::string_view path) {
 }  // namespace
 
 bool applies(const Key& key, const MissionDocument& document) {
-  const bool is_of_photos = key.path.starts_with("photo.") || key.path == "sensor.photo_camera" ||
-                            key.path == "flight.free_space";
+  if (key.path.starts_with("inspection.")) return document.is_inspection();
+  if (key.path == "flight.free_space") return document.is_for_known_target();
+  if (document.is_inspection() && key.path.starts_with("photo.")) return false;
+  const bool is_of_photos = key.path.starts_with("photo.") || key.path == "sensor.photo_camera";
   if (!document.is_photo()) return !is_of_photos;
   return is_of_photos || find_replacing_photo_key(key.path).empty();
 }

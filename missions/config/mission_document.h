@@ -74,6 +74,24 @@ struct PhotoSection {
   PhotoPass pass = PhotoPass::final_pass;
 };
 
+/// Continuous flight around a known structure. Empty limits of motion are those of
+/// config::complete_inspection().
+struct InspectionSection {
+  std::optional<double> range;  ///< Maximum view distance; makes the mission an inspection [m].
+  std::optional<std::string> cloud;  ///< Point cloud of the structure, instead of a target.
+  double share = 0.98;               ///< Required fraction of the attainable points.
+  double max_incidence = 1.3089969389957472;  ///< [rad]
+  int min_views = 1;
+  std::optional<double> spacing;           ///< Distance between the points of the structure [m].
+  std::optional<double> max_speed;         ///< [m/s]
+  std::optional<double> max_acceleration;  ///< [m/s^2]
+  std::optional<double> max_jerk;          ///< [m/s^3]
+  std::optional<double> max_yaw_rate;      ///< [rad/s]
+  std::optional<double> max_yaw_acceleration;  ///< [rad/s^2]
+  int moves = 60'000;
+  int searches = 2;
+};
+
 /// Where a mission with a photo camera, which measures no free space, may fly.
 enum class FreeSpaceRule {
   measured,  ///< outside of the unknown boxes
@@ -182,6 +200,7 @@ struct MissionDocument {
   scene::SceneOptions scene;
   SensorSection sensor;
   PhotoSection photo;
+  InspectionSection inspection;
   PlannerSection planner;
   StartSection start;
   LimitsSection limits;
@@ -200,6 +219,10 @@ struct MissionDocument {
 
   /// Whether photos are planned, for a target that prior data knows.
   bool is_photo() const { return sensor.photo_camera.has_value(); }
+  /// Whether a continuous flight around a known structure is planned, with any camera.
+  bool is_inspection() const { return inspection.range.has_value(); }
+  /// Whether the flight is planned from prior data only, so that nothing is measured or simulated.
+  bool is_for_known_target() const { return is_photo() || is_inspection(); }
 
   /// Throws Error{bad_config} with the one-line message "FILE:LINE: key KEY WHAT". Line 1 is
   /// reported for keys that are not in the file.

@@ -370,7 +370,7 @@ MissionDocument mission_from(const std::string& text, const std::string& name,
   record_source_of_planner(overrides, result);
   for (const Key& key : mission_keys()) {
     if (!key.is_required || parsed_value.contains(key.path)) continue;
-    if (result.is_photo()) continue;  // what simulated surveys of depth sensors require
+    if (result.is_for_known_target()) continue;  // what simulated surveys of depth sensors require
     result.reject(key.path, "is missing; it must be " + expected_value(key));
   }
   return result;

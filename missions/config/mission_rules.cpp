@@ -220,7 +220,7 @@ void check_flight(const MissionDocument& document) {
         "must be greater than flight.unknown_box.min on every axis; swap or widen the corners");
   }
   check_extra_unknown_boxes(document);
-  if (flight.unknown_box.isEmpty()) {
+  if (flight.unknown_box.isEmpty() && !document.is_inspection()) {
     document.reject(
         "flight.vehicle",
         "requires flight.unknown_box around the building, in which unknown space counts "

@@ -37,7 +37,8 @@ std::vector<Pattern> patterns_of(const MissionDocument& document) {
 void check_without_camera(const MissionDocument& document) {
   for (const auto& [key, position] : document.locations) {
     if (key.starts_with("photo.") ||
-        (key == "flight.free_space" && document.flight.free_space == FreeSpaceRule::assumed)) {
+        (key == "flight.free_space" && document.flight.free_space == FreeSpaceRule::assumed &&
+         !document.is_inspection())) {
       document.reject(key, "requires a photo camera; set sensor.photo_camera, or remove the key");
     }
   }
@@ -90,6 +91,7 @@ void check_photo(const MissionDocument& document) {
     return;
   }
   check_other_sensors(document);
+  if (document.is_inspection()) return;  // the section inspection replaces the section photo
   if (!document.photo.gsd) {
     document.reject("photo.gsd",
                     "is missing; set the ground sampling distance in metres, for "
@@ -120,6 +122,7 @@ void complete_photo(MissionDocument& document, const geometry::PhotoCameraConfig
                           .vertical_fov = camera.vertical_fov()};
   sensor.camera.noise.sigma = 0.0;
   sensor.shutter = {.exposure = config.exposure, .readout = config.readout};
+  if (document.is_inspection()) document.photo.gsd = camera.gsd(*document.inspection.range);
   const double gsd = planned_gsd(document);
   document.planner.sampling.view_distance = camera.distance(gsd);
   document.planner.sampling.spacing = gsd;

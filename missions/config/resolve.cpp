@@ -12,6 +12,7 @@
 #include "geometry/io/record_log.h"
 #include "geometry/pose/camera.h"
 #include "missions/config/derived_values.h"
+#include "missions/config/inspection_rules.h"
 #include "missions/config/key_texts.h"
 #include "missions/config/mission_keys.h"
 #include "missions/config/mission_rules.h"
@@ -315,11 +316,13 @@ void complete_own_keys(MissionDocument& document, const Profiles& profiles) {
   }
   complete_scanner(document, profiles);
   check_photo(document);
+  check_inspection(document);
   if (profiles.photo_camera) {
     std::string& name = *document.sensor.photo_camera;
     name = vehicle_name(document, name);  // a path is kept whole, as a vehicle's
     complete_photo(document, *profiles.photo_camera);
   }
+  complete_inspection(document);
   check_scene(document);
   check_start(document);
   check_sensor(document);
@@ -334,7 +337,7 @@ void complete_with_priors(MissionDocument& document,
   make_sources_absolute(document);
   document.scene.priors = std::move(priors);
   document.scene.truth = truth_role(document);
-  if (document.scene.priors && !document.is_photo()) check_truth(document);
+  if (document.scene.priors && !document.is_for_known_target()) check_truth(document);
   derive_scene_box(document);
   derive_scanner_flight(document);
   check_flight(document);
@@ -342,7 +345,7 @@ void complete_with_priors(MissionDocument& document,
   derive_building_preset(document);
   derive_ground_clearance(document);
   check_view_limits(document);
-  if (!document.is_photo()) check_planner(document);
+  if (!document.is_for_known_target()) check_planner(document);
 }
 
 survey::SurveyLimits survey_limits(const MissionDocument& document) {
@@ -397,7 +400,7 @@ MissionSetup make_setup(const MissionDocument& document,
                      document.paper.distance};
   setup.run = {document.seed, document.threads};
   setup.settings = survey_settings(document, vehicle_checksum);
-  if (document.is_photo()) keep_off_targets(document, simulation.survey.flight);
+  if (document.is_for_known_target()) keep_off_targets(document, simulation.survey.flight);
   return setup;
 }
 
@@ -526,7 +529,7 @@ std::string MissionSetup::text(std::string_view key) const {
 MissionSetup read_mission(const std::filesystem::path& file,
                           const std::vector<KeyOverride>& overrides, const Report& report) {
   MissionDocument document = read_mission_document(file, overrides);
-  if (document.scene.model.empty() && !truth_role(document) && !document.is_photo()) {
+  if (document.scene.model.empty() && !truth_role(document) && !document.is_for_known_target()) {
     document.reject(
         "scene.model",
         std::string("is missing; set a model, for example builtin:teapot") +
@@ -542,7 +545,7 @@ MissionSetup read_mission(const std::filesystem::path& file,
 MissionSetup read_live_mission(const std::filesystem::path& file,
                                const std::vector<KeyOverride>& overrides, const Report& report) {
   MissionDocument document = read_mission_document(file, overrides);
-  if (document.scene.model.empty() && !document.is_photo()) check_live(document);
+  if (document.scene.model.empty() && !document.is_for_known_target()) check_live(document);
   return resolve(std::move(document), report);
 }
 

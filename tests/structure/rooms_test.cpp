@@ -55,6 +55,7 @@ Modules architecture() {
   add("survey/external", {"survey"});
   add("survey/fixed_views", {"survey"});
   add("survey/pb_nbv", {"survey"});
+  add("survey/inspection", {"survey"});
   add("survey/photo", {"survey"});
   add("survey/see", {"survey"});
   add("survey/surfel/raster", {"survey"});
@@ -135,6 +136,9 @@ Modules architecture() {
   add_library({"photo"}, {"sim", "survey", "flight"},
               {"package", "wizard", "config", "scan", "simulation", "evaluation", "session",
                "scene", "site_data", "support"});
+  add_library({"inspection"}, {"sim", "survey", "flight"},
+              {"package", "config", "scan", "simulation", "evaluation", "session", "scene",
+               "site_data", "support"});
   add_library({"report"}, {"sim", "survey", "flight"},
               {"package", "config", "scan", "simulation", "evaluation", "session", "scene",
                "site_data", "support"});
@@ -145,8 +149,8 @@ Modules architecture() {
               {"package", "config", "scan", "simulation", "evaluation", "session", "scene",
                "site_data", "support"});
   add_library({"cli", "cli/clouds"}, {"sim", "survey", "flight"},
-              {"report", "batch", "photo", "wizard", "package", "config", "online", "scan",
-               "simulation", "evaluation", "session", "scene", "site_data", "support"});
+              {"report", "batch", "photo", "inspection", "wizard", "package", "config", "online",
+               "scan", "simulation", "evaluation", "session", "scene", "site_data", "support"});
   // Like a user of the library: public headers only.
   add("python",
       {"sim/models", "sim/sensors", "survey", "flight/clearance", "flight/route", "missions/api"});

@@ -19,6 +19,7 @@
 #include "geometry/io/record_log.h"
 #include "geometry/parallel.h"
 #include "geometry/surfaces/mesh.h"
+#include "missions/cli/clouds/evaluate_flight.h"
 #include "missions/cli/commands.h"
 #include "missions/cli/tasks.h"
 #include "missions/config/resolve.h"
@@ -394,6 +395,7 @@ int evaluate_shards(const EvaluateOptions& options, const Console& console) {
 }  // namespace
 
 int evaluate(const EvaluateOptions& options, const Console& console) {
+  if (!options.flight.empty()) return evaluate_flight_file(options, console);
   if (options.density && (options.shards > 0 || options.cloud.empty())) {
     throw Error(ErrorKind::bad_usage, "--density requires --cloud and conflicts with --pieces");
   }

@@ -1,0 +1,33 @@
+/// Result files and printed summary of an inspection mission.
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "geometry/io/output_folder.h"
+#include "missions/config/mission_setup.h"
+#include "missions/inspection/inspection_mission.h"
+
+namespace skycap::missions::inspection {
+
+inline constexpr const char* flight_name = "inspection.csv";
+inline constexpr const char* structure_name = "structure.ply";
+
+/// Returns the lines of an evaluation: surface seen, views, distances and limits of motion.
+std::string evaluation_text(const survey::inspection::FlightEvaluation& evaluation);
+nlohmann::ordered_json evaluation_json(const survey::inspection::FlightEvaluation& evaluation);
+
+/// Returns the printed summary of a plan, without the folder and the warnings.
+std::string plan_text(const config::MissionSetup& setup, const InspectionMission& mission);
+
+/// Returns a line "Warning: ..." for each warning.
+std::string warnings_text(const InspectionMission& mission);
+
+/// Stages summary.json, the flight, and structure.ply: the points of the structure with the rules
+/// by which they are seen. The files of the flight are inspection.csv, setpoints.enu.csv,
+/// setpoints.ned.csv and camera.tum. The commit removes files of earlier runs of another kind.
+void stage_inspection_mission(const config::MissionSetup& setup, const InspectionMission& mission,
+                              geometry::OutputFolder& folder);
+
+}  // namespace skycap::missions::inspection

@@ -1,0 +1,239 @@
+#include "survey/inspection/inspection_planner.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "geometry/error.h"
+#include "geometry/interrupted.h"
+#include "geometry/parallel.h"
+#include "geometry/random_numbers.h"
+
+namespace skycap::survey::inspection {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+/// Returns the cloud in random order, so that its first points are a sample of the surface.
+StructureCloud shuffled(const StructureCloud& cloud, geometry::RandomNumbers& random) {
+  std::vector<std::size_t> order(cloud.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random() % i]);
+  StructureCloud result;
+  result.median_radius = cloud.median_radius;
+  for (const std::size_t i : order) {
+    result.points.push_back(cloud.points[i]);
+    result.normals.push_back(cloud.normals[i]);
+    result.radii.push_back(cloud.radii[i]);
+  }
+  return result;
+}
+
+/// Returns the number of points of the first phase of the search.
+std::size_t first_phase_targets(std::size_t points) {
+  constexpr std::size_t large = 30'000, min_targets = 3000;
+  const std::size_t targets = points < large ? points / 3 : points / 8;
+  return std::min(points, std::max(targets, min_targets));
+}
+
+SpaceOptions space_options(const InspectionOptions& options, const InspectionSite& site,
+                           const StructureCloud& cloud, unsigned threads) {
+  constexpr double margin = 2.0, distance_margin = 2.0, range_share = 0.65;
+  SpaceOptions space;
+  space.box = cloud.box();
+  space.box.min().array() -= options.camera.range + margin;
+  space.box.max().array() += options.camera.range + margin;
+  // Cells and nodes have sides of about a metre.
+  if (site.min_height) {
+    space.min_height = *site.min_height;
+    space.box.min().z() = std::max(space.box.min().z(), space.min_height - margin);
+  }
+  if (site.max_height) {
+    space.max_height = *site.max_height;
+    space.box.max().z() = std::min(space.box.max().z(), space.max_height + margin);
+  }
+  if ((space.box.sizes().array() <= 0.0).any()) {
+    throw Error(ErrorKind::bad_geometry,
+                "the limits of height leave no space around the structure; check the limits");
+  }
+  space.clearance = options.clearance;
+  space.max_distance =
+      std::max(options.clearance + distance_margin, range_share * options.camera.range);
+  space.distance = site.distance;
+  space.is_free = site.is_free;
+  space.threads = threads;
+  return space;
+}
+
+/// Returns the smallest distance of a flight from all obstacles [m].
+double verified_distance(const InspectionOptions& options, const InspectionSite& site,
+                         const StructureCloud& cloud, std::span<const FlightSample> flight) {
+  // The flight leaves a chord by at most a dt^2 / 8.
+  const double chord = options.limits.acceleration * sample_interval * sample_interval / 8.0;
+  if (!site.segment_distance) return nearest_distance(flight, cloud).points - chord;
+  const double up_to = options.clearance + options.camera.range;
+  double nearest = up_to;
+  for (std::size_t i = 1; i < flight.size(); ++i) {
+    nearest = std::min(nearest,
+                       site.segment_distance(flight[i - 1].position, flight[i].position, nearest));
+  }
+  return nearest - chord;
+}
+
+EvaluationOptions evaluation_options(const InspectionOptions& options, unsigned threads) {
+  EvaluationOptions evaluation;
+  evaluation.camera = options.camera;
+  evaluation.limits = options.limits;
+  evaluation.min_pitch = options.pitch.min;
+  evaluation.max_pitch = options.pitch.max;
+  evaluation.threads = threads;
+  return evaluation;
+}
+
+/// Route of one of the searches.
+struct Proposal {
+  const SearchedRoute* route;
+  std::size_t search;
+};
+
+/// Returns all improvements, best first.
+std::vector<Proposal> ranked(const std::vector<SearchResult>& results) {
+  std::vector<Proposal> proposals;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    for (const SearchedRoute& route : results[i].improvements) proposals.push_back({&route, i});
+  }
+  std::ranges::stable_sort(proposals, [](const Proposal& a, const Proposal& b) {
+    return std::tuple(a.route->missing, a.route->duration, a.search) <
+           std::tuple(b.route->missing, b.route->duration, b.search);
+  });
+  return proposals;
+}
+
+/// Verifies routes, best first, and returns the first one that keeps clearance and limits.
+InspectionPlan verified_plan(const InspectionOptions& options, const InspectionSite& site,
+                             const StructureCloud& cloud, const std::vector<SearchResult>& results,
+                             unsigned threads) {
+  InspectionPlan plan;
+  plan.smoothing = make_smoothing(options.limits);
+  double best_distance = 0.0;
+  for (const Proposal& proposal : ranked(results)) {
+    std::vector<FlightSample> samples =
+        sample_flight(proposal.route->vertices, plan.smoothing, sample_interval);
+    const double distance = verified_distance(options, site, cloud, samples);
+    best_distance = std::max(best_distance, distance);
+    if (distance < options.clearance) continue;
+    FlightEvaluation evaluation =
+        evaluate_flight(samples, cloud, evaluation_options(options, threads));
+    if (!evaluation.keeps_limits()) continue;
+    plan.vertices = proposal.route->vertices;
+    plan.samples = std::move(samples);
+    plan.evaluation = std::move(evaluation);
+    plan.meets_goal = proposal.route->meets_goal();
+    plan.verified_clearance = distance;
+    plan.search = proposal.search;
+    plan.first_duration = results[proposal.search].first_duration;
+    return plan;
+  }
+  throw Error(ErrorKind::bad_geometry,
+              best_distance > 0.0
+                  ? fmt::format("no flight of the search keeps the clearance of {:.2f} m from all "
+                                "surfaces (best: {:.2f} m); raise the number of moves or lower "
+                                "the clearance",
+                                options.clearance, best_distance)
+                  : "no flight of the search keeps the clearance and the limits of motion; raise "
+                    "the number of moves, or lower the clearance or the speed");
+}
+
+}  // namespace
+
+void InspectionOptions::validate() const {
+  camera.validate();
+  limits.validate();
+  const auto require = [](bool is_valid, const std::string& what) {
+    if (!is_valid) throw Error(ErrorKind::bad_config, what);
+  };
+  require(clearance > 0.0 && std::isfinite(clearance), "clearance must be positive");
+  require(camera.range > clearance,
+          fmt::format("range ({:g} m) must be greater than the clearance ({:g} m); raise range or "
+                      "lower the clearance",
+                      camera.range, clearance));
+  require(pitch.min < pitch.max, "the minimum pitch must be less than the maximum pitch");
+  for (const double share : goal.shares) {
+    require(share >= 0.0 && share <= 1.0, "shares must be between 0 and 1");
+  }
+  require(goal.min_views >= 1, "min_views must be at least 1");
+  require(moves >= 1, "moves must be at least 1");
+  require(searches >= 1, "searches must be at least 1");
+  require(candidates >= 1, "candidates must be at least 1");
+}
+
+InspectionPlan plan_inspection(const InspectionOptions& options, const InspectionSite& site,
+                               const InspectionRun& run) {
+  options.validate();
+  const auto report = [&](const std::string& what) {
+    if (run.report) run.report(what);
+  };
+  const auto check_stop = [&] {
+    if (run.stop.stop_requested()) throw Interrupted();
+  };
+  const unsigned threads = geometry::thread_count(run.threads);
+  report("computing normals");
+  geometry::RandomNumbers random(run.seed, 0);
+  const StructureCloud cloud = shuffled(make_structure_cloud(site.points, site.normals), random);
+  check_stop();
+  report("computing the distance field");
+  const ReachableSpace space(cloud, space_options(options, site, cloud, threads));
+  check_stop();
+
+  report("choosing viewpoints");
+  const SightCells cells(cloud, options.camera, space.box());
+  TourOptions tour;
+  tour.candidates = options.candidates;
+  tour.targets = first_phase_targets(cloud.size());
+  tour.pitch = options.pitch;
+  tour.threads = threads;
+  tour.share = 0.0;
+  for (std::size_t rule = 0; rule < sight_rules; ++rule) {
+    if (options.goal.shares[rule] <= 0.0) continue;
+    tour.level = static_cast<std::uint32_t>(rule + 1);
+    tour.share = options.goal.shares[rule];
+  }
+  const ViewCandidates candidates = draw_candidates(space, cells, tour, random);
+  check_stop();
+  const std::vector<Vertex> first = make_first_tour(space, cells, candidates, tour, run.stop);
+
+  SearchOptions search;
+  search.limits = options.limits;
+  search.goal = options.goal;
+  search.pitch = options.pitch;
+  search.moves = options.moves;
+  search.first_phase_targets = tour.targets;
+  std::vector<SearchResult> results(options.searches);
+  geometry::parallel_for(options.searches, threads, [&](std::size_t i) {
+    geometry::RandomNumbers own(run.seed, i + 1);
+    SearchProgress progress;
+    if (i == 0) {
+      progress = [&](double share, double duration) {
+        report(fmt::format("searching, {:.0f}%, flight of {:.0f} s", 100.0 * share, duration));
+      };
+    }
+    results[i] = search_route(space, cells, candidates, first, search, own, run.stop, progress);
+  });
+  check_stop();
+  report("verifying the flight");
+  InspectionPlan plan = verified_plan(options, site, cloud, results, threads);
+  for (const SearchResult& result : results) plan.evaluated_moves += result.evaluated;
+  for (const std::uint8_t level : candidates.attainable) {
+    for (std::size_t rule = 0; rule < level; ++rule) ++plan.attainable[rule];
+  }
+  plan.cells = cells.computed();
+  plan.cloud = cloud;
+  return plan;
+}
+
+}  // namespace skycap::survey::inspection

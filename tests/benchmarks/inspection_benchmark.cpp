@@ -1,0 +1,189 @@
+/// Inspection flights: duration, shares by the three rules of visibility, distances and limits of a
+/// planned flight, or of a flight of another program, around a cloud or a scene model.
+///
+///   inspection_benchmark (--cloud FILE | --scene NAME) [--flight FILE] [--range M, 8]
+///                        [--clearance M, 3] [--shares A B C, 0 0 0.98] [--views N, 1]
+///                        [--min-height M] [--moves N, 60000] [--searches N, 1] [--seed N, 1]
+///                        [--spacing M, range / 40] [--threads N, 1]
+///
+/// NAME is a model of sim/models/models.h, such as radcliffe-camera, whose surface is sampled at
+/// the spacing. Clouds are used as they are. The camera is 75 degrees wide and 55 degrees high, the
+/// pitch is between -85 and 70 degrees, and the limits are 2 m/s, 1 m/s^2, 0.5 m/s^3, 60 degrees/s
+/// and 30 degrees/s^2: those of FC-Planner (ICRA 2024). --flight evaluates a flight instead of
+/// planning one: t x y z yaw pitch per line.
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <sys/resource.h>
+
+#include "geometry/angle.h"
+#include "geometry/error.h"
+#include "geometry/io/cloud_io.h"
+#include "geometry/surfaces/mesh.h"
+#include "missions/inspection/flight_file.h"
+#include "sim/models/models.h"
+#include "survey/inspection/inspection_planner.h"
+
+namespace {
+
+using namespace skycap;
+using namespace skycap::survey::inspection;
+using geometry::degrees_per_radian;
+using geometry::radians_per_degree;
+
+struct Arguments {
+  std::string cloud, scene, flight;
+  double spacing = 0.0;
+  std::optional<double> min_height;
+  InspectionOptions options;
+  InspectionRun run;
+};
+
+Arguments parse(int count, char** values) {
+  Arguments arguments;
+  arguments.options.searches = 1;
+  arguments.options.goal.shares = {0.0, 0.0, 0.98};
+  arguments.options.pitch = {-85.0 * radians_per_degree, 70.0 * radians_per_degree};
+  for (int i = 1; i < count; ++i) {
+    const std::string_view name = values[i];
+    const auto text = [&] {
+      if (i + 1 >= count) {
+        std::fprintf(stderr, "%s requires a value\n", values[i]);
+        std::exit(2);
+      }
+      return std::string(values[++i]);
+    };
+    const auto number = [&] { return std::atof(text().c_str()); };
+    const auto whole = [&] { return static_cast<std::size_t>(number()); };
+    InspectionOptions& options = arguments.options;
+    if (name == "--cloud") {
+      arguments.cloud = text();
+    } else if (name == "--scene") {
+      arguments.scene = text();
+    } else if (name == "--flight") {
+      arguments.flight = text();
+    } else if (name == "--range") {
+      options.camera.range = number();
+    } else if (name == "--clearance") {
+      options.clearance = number();
+    } else if (name == "--views") {
+      options.goal.min_views = static_cast<int>(number());
+    } else if (name == "--min-height") {
+      arguments.min_height = number();
+    } else if (name == "--moves") {
+      options.moves = whole();
+    } else if (name == "--searches") {
+      options.searches = whole();
+    } else if (name == "--seed") {
+      arguments.run.seed = whole();
+    } else if (name == "--spacing") {
+      arguments.spacing = number();
+    } else if (name == "--threads") {
+      arguments.run.threads = static_cast<unsigned>(number());
+    } else if (name == "--shares") {
+      for (double& share : options.goal.shares) share = number();
+    } else {
+      std::fprintf(stderr, "unknown argument %s\n", values[i]);
+      std::exit(2);
+    }
+  }
+  return arguments;
+}
+
+double processor_seconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+InspectionSite make_site(const Arguments& arguments) {
+  InspectionSite site;
+  site.min_height = arguments.min_height;
+  if (!arguments.cloud.empty()) {
+    site.points = geometry::read_cloud(arguments.cloud).positions;
+    return site;
+  }
+  const geometry::Mesh mesh = sim::builtin_model(
+      arguments.scene, {.detail = sim::LevelOfDetail::coarse, .has_ground = false});
+  const double spacing =
+      arguments.spacing > 0.0 ? arguments.spacing : arguments.options.camera.range / 40.0;
+  const auto count =
+      static_cast<std::size_t>(geometry::surface_area(mesh) / (spacing * spacing)) + 100;
+  const geometry::SurfaceSamples samples = geometry::sample_surface(mesh, count, 1);
+  site.points = samples.points;
+  site.normals = samples.normals;
+  return site;
+}
+
+void print(const LimitUse& use, const char* name, const char* unit, double factor = 1.0) {
+  std::printf("  %-16s %8.3f of %g %s, above in %.2f%% of the samples\n", name, factor * use.max,
+              factor * use.limit, unit, 100.0 * use.share_above);
+}
+
+void print(const FlightEvaluation& evaluation) {
+  std::printf("  duration         %8.1f s, %.1f m\n", evaluation.duration, evaluation.length);
+  std::printf("  seen             pixel %zu (%.2f%%), solid %.2f%%, incidence %.2f%% of %zu\n",
+              evaluation.seen[0], 100.0 * evaluation.share(0), 100.0 * evaluation.share(1),
+              100.0 * evaluation.share(2), evaluation.points);
+  std::printf("  views            mean %.1f, median %.0f, 10%% %.0f; nearest, median %.2f m\n",
+              evaluation.views.mean, evaluation.views.median, evaluation.views.percentile_10,
+              evaluation.median_view_distance);
+  std::printf("  nearest          %.3f m, lowest z %.2f m\n", evaluation.nearest,
+              evaluation.min_height);
+  print(evaluation.speed, "speed", "m/s");
+  print(evaluation.acceleration, "acceleration", "m/s^2");
+  print(evaluation.jerk, "jerk", "m/s^3");
+  print(evaluation.yaw_rate, "yaw rate", "degrees/s", degrees_per_radian);
+  print(evaluation.yaw_acceleration, "yaw acceleration", "degrees/s^2", degrees_per_radian);
+  print(evaluation.pitch_rate, "pitch rate", "degrees/s", degrees_per_radian);
+  std::printf("  limits           %s\n", evaluation.keeps_limits() ? "kept" : "exceeded");
+}
+
+void run(const Arguments& arguments) {
+  const InspectionSite site = make_site(arguments);
+  if (!arguments.flight.empty()) {
+    EvaluationOptions options;
+    options.camera = arguments.options.camera;
+    options.limits = arguments.options.limits;
+    options.min_pitch = arguments.options.pitch.min;
+    options.max_pitch = arguments.options.pitch.max;
+    options.threads = arguments.run.threads;
+    print(evaluate_flight(missions::inspection::read_flight_csv(arguments.flight),
+                          make_structure_cloud(site.points, site.normals), options));
+    std::printf("  processor        %8.1f s\n", processor_seconds());
+    return;
+  }
+  const InspectionPlan plan = plan_inspection(arguments.options, site, arguments.run);
+  std::printf("  first tour       %8.1f s; %zu moves evaluated, %zu cells, %zu vertices; goal %s\n",
+              plan.first_duration, plan.evaluated_moves, plan.cells, plan.vertices.size(),
+              plan.meets_goal ? "met" : "missed");
+  std::printf("  attainable       pixel %zu, solid %zu, incidence %zu\n", plan.attainable[0],
+              plan.attainable[1], plan.attainable[2]);
+  print(plan.evaluation);
+  std::printf("  processor        %8.1f s\n", processor_seconds());
+}
+
+}  // namespace
+
+int main(int count, char** values) {
+  const Arguments arguments = parse(count, values);
+  if (arguments.cloud.empty() == arguments.scene.empty()) {
+    std::fprintf(stderr, "either --cloud or --scene is required\n");
+    return 2;
+  }
+  try {
+    run(arguments);
+  } catch (const Error& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+  return 0;
+}
