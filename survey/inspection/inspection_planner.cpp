@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
+#include <string>
 #include <tuple>
 #include <utility>
-
-#include <fmt/format.h>
 
 #include "geometry/error.h"
 #include "geometry/interrupted.h"
@@ -18,6 +18,15 @@ namespace {
 
 using Eigen::Vector3d;
 using Eigen::Vector3f;
+
+/// Returns the parts as one text; numbers have up to four digits.
+template <typename... Parts>
+std::string joined_text(const Parts&... parts) {
+  std::ostringstream text;
+  text.precision(4);
+  (text << ... << parts);
+  return text.str();
+}
 
 /// Returns the cloud in random order, so that its first points are a sample of the surface.
 StructureCloud shuffled(const StructureCloud& cloud, geometry::RandomNumbers& random) {
@@ -141,10 +150,9 @@ InspectionPlan verified_plan(const InspectionOptions& options, const InspectionS
   }
   throw Error(ErrorKind::bad_geometry,
               best_distance > 0.0
-                  ? fmt::format("no flight of the search keeps the clearance of {:.2f} m from all "
-                                "surfaces (best: {:.2f} m); raise the number of moves or lower "
-                                "the clearance",
-                                options.clearance, best_distance)
+                  ? joined_text("no flight of the search keeps the clearance of ",
+                                options.clearance, " m from all surfaces (best: ", best_distance,
+                                " m); raise the number of moves or lower the clearance")
                   : "no flight of the search keeps the clearance and the limits of motion; raise "
                     "the number of moves, or lower the clearance or the speed");
 }
@@ -159,9 +167,8 @@ void InspectionOptions::validate() const {
   };
   require(clearance > 0.0 && std::isfinite(clearance), "clearance must be positive");
   require(camera.range > clearance,
-          fmt::format("range ({:g} m) must be greater than the clearance ({:g} m); raise range or "
-                      "lower the clearance",
-                      camera.range, clearance));
+          joined_text("range (", camera.range, " m) must be greater than the clearance (",
+                      clearance, " m); raise range or lower the clearance"));
   require(pitch.min < pitch.max, "the minimum pitch must be less than the maximum pitch");
   for (const double share : goal.shares) {
     require(share >= 0.0 && share <= 1.0, "shares must be between 0 and 1");
@@ -219,7 +226,8 @@ InspectionPlan plan_inspection(const InspectionOptions& options, const Inspectio
     SearchProgress progress;
     if (i == 0) {
       progress = [&](double share, double duration) {
-        report(fmt::format("searching, {:.0f}%, flight of {:.0f} s", 100.0 * share, duration));
+        report(joined_text("searching, ", std::round(100.0 * share), "%, flight of ",
+                           std::round(duration), " s"));
       };
     }
     results[i] = search_route(space, cells, candidates, first, search, own, run.stop, progress);
