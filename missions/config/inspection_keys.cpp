@@ -38,10 +38,10 @@ std::vector<Key> motion_keys() {
 
 std::vector<Key> coverage_keys() {
   return {
-      otherwise("-", number_key("inspection.range", "m", above(0, 1000),
-                                inspection(&InspectionSection::range),
-                                "Maximum view distance. Makes the mission an inspection: a "
-                                "continuous flight around a known structure, without stops.")),
+      otherwise("none", number_key("inspection.range", "m", above(0, 1000),
+                                   inspection(&InspectionSection::range),
+                                   "Maximum view distance. Makes the mission an inspection: a "
+                                   "continuous flight around a known structure, without stops.")),
       otherwise("the targets of the prior data",
                 text_key("inspection.cloud", inspection(&InspectionSection::cloud),
                          "Point cloud of the structure in the mission frame (.ply, .pcd, .las, "

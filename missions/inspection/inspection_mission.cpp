@@ -10,10 +10,9 @@
 namespace skycap::missions::inspection {
 namespace {
 
+using survey::inspection::incidence_rule;
 using survey::inspection::InspectionOptions;
 using survey::inspection::InspectionPlan;
-
-constexpr std::size_t incidence_rule = 2;
 
 std::vector<std::string> make_warnings(const config::MissionSetup& setup,
                                        const InspectionOptions& options,

@@ -29,10 +29,12 @@ using Json = nlohmann::ordered_json;
 using support::to_json;
 using survey::inspection::FlightEvaluation;
 using survey::inspection::FlightSample;
+using survey::inspection::incidence_rule;
 using survey::inspection::InspectionPlan;
 using survey::inspection::LimitUse;
+using survey::inspection::pixel_rule;
+using survey::inspection::solid_rule;
 
-constexpr std::size_t pixel_rule = 0, solid_rule = 1, incidence_rule = 2;
 constexpr const char* enu_name = "setpoints.enu.csv";
 constexpr const char* ned_name = "setpoints.ned.csv";
 constexpr const char* tum_name = "camera.tum";

@@ -19,8 +19,10 @@
 
 namespace skycap::survey::inspection {
 
+/// Number of rules of visibility, and their indices.
 inline constexpr std::size_t sight_rules = 3;
-/// Value for each rule: pixel, solid, incidence.
+inline constexpr std::size_t pixel_rule = 0, solid_rule = 1, incidence_rule = 2;
+/// Value for each rule.
 template <typename Value>
 using PerRule = std::array<Value, sight_rules>;
 

@@ -43,12 +43,12 @@ endfunction()
 
 set(heavy PCL MRPT mrpt-maps ompl CGAL OpenSSL fmt yaml-cpp CLI11 nlohmann_json)
 build_against_installed(own_sensor ${SOURCE}/examples/own_sensor ${heavy} Ceres embree)
-expect_output(own_sensor "views, [0-9]+ points, (9[0-9]|100)[.][0-9] % believed covered\n$")
+expect_output(own_sensor "views, [0-9]+ points, (9[0-9]|100)[.][0-9] % estimated coverage\n$")
 build_against_installed(certify_route ${SOURCE}/examples/certify_route ${heavy} embree)
 # Only the third leg violates the clearance: it crosses the roof, which is 30 m high, at 31 m.
-expect_output(certify_route "^leg 2: 1[.]000 m from [^\n]*\n3 of 4 legs keep 2 m\n$")
+expect_output(certify_route "^leg 2: 1[.]000 m from [^\n]*\n3 of 4 legs have a clearance of at least 2 m\n$")
 build_against_installed(simulate_lidar ${SOURCE}/examples/simulate_lidar ${heavy} Ceres)
-expect_output(simulate_lidar "^[1-9][0-9]* returns of 80000 shots\n$")
+expect_output(simulate_lidar "^[1-9][0-9]* returns from 80000 pulses\n$")
 build_against_installed(own_planner ${SOURCE}/examples/own_planner ${heavy} embree)
 
 # Compiles each public header on its own.
@@ -84,7 +84,7 @@ foreach(header IN LISTS headers)
 endforeach()
 build_against_installed(headers ${SOURCE}/examples/headers)
 list(LENGTH headers count)
-expect_output(headers "^${count} of ${count} examples hold\n$")
+expect_output(headers "^${count} of ${count} examples passed\n$")
 
 # No file contains the build folder, and the program finds its plug-ins.
 file(GLOB_RECURSE files ${FOLDER}/moved/include/* ${FOLDER}/moved/*.cmake)

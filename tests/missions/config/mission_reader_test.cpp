@@ -85,8 +85,9 @@ TEST(MissionReader, SuggestsKeyInCorrectSection) {
   EXPECT_EQ(error_message(smallest + "sensor:\n  sigma: 0.1\n"),
             "m.yaml:4: key sensor.sigma is unknown; did you mean sensor.noise.sigma?");
   EXPECT_THAT(error_message(smallest + "colour_of_the_sky: blue\n"),
-              HasSubstr("expected one of: name, seed, threads, scene, sensor, photo, planner, "
-                        "volumetric, uniform, pb_nbv, start, limits, evaluation, paper, site, "
+              HasSubstr("expected one of: name, seed, threads, scene, sensor, photo, "
+                        "inspection, planner, volumetric, uniform, pb_nbv, start, limits, "
+                        "evaluation, paper, site, "
                         "flight, scan"));
 }
 

@@ -260,8 +260,8 @@ TEST_F(PhotoMissionTest, RejectsATargetOutsideTheGeofenceWithItsOffset) {
   const config::MissionSetup setup = read(with(mission_yaml, "site: {", fence));
   EXPECT_THAT([&] { photo::PhotoAirspace(setup, 1); },
               testing::ThrowsMessage<Error>(
-                  HasSubstr("m of the mission frame, (-100.0, -50.0) m from the centre of the "
-                            "geofence; set crs and offset, or place")));
+                  HasSubstr("m in the mission frame, (-100.0, -50.0) m from the centre of the "
+                            "geofence; set the keys crs and offset, or the key place")));
 }
 
 TEST_F(PhotoMissionTest, StaysOutsideOfTheUnknownBoxWhenSpaceIsMeasured) {
