@@ -32,9 +32,10 @@ std::vector<std::uint32_t> distinct_points(std::span<const Vector3f> points) {
     const auto left = key(a), right = key(b);
     return left != right ? left < right : a < b;
   });
-  const auto repeated = std::ranges::unique(
-      order, [&](std::uint32_t a, std::uint32_t b) { return points[a] == points[b]; });
-  order.erase(repeated.begin(), repeated.end());
+  // std::ranges::unique does not compile with clang 14.
+  order.erase(std::unique(order.begin(), order.end(),
+                          [&](std::uint32_t a, std::uint32_t b) { return points[a] == points[b]; }),
+              order.end());
   std::ranges::sort(order);
   return order;
 }
