@@ -23,7 +23,8 @@ import re
 import subprocess
 
 MARK = re.compile(r"^<!-- checked(?:(, times of| as): (.+?))? -->$")
-NUMBER = re.compile(r"\d+(?:\.\d+)?")
+# Number or range with its unit of time: a duration near 1 s is printed in s or ms.
+NUMBER = re.compile(r"\d+(?:\.\d+)?(?: to \d+(?:\.\d+)?)?(?: (?:us|ms|s|min|h)\b)?")
 MOST_SECONDS = 900  # limit for one command, sufficient on a busy machine
 PYTHON = "/usr/bin/python3"  # the module is built for this interpreter
 PROMPT, CONTINUED = ">>> ", "..."
