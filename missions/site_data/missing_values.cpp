@@ -16,8 +16,8 @@ MissingValues missing_values(const Source& source) {
       if (object.polygons.empty() || object.has_heights) continue;
       missing.base = missing.base || !(source.base || source.base_on_terrain);
       const bool has_height = source.height || object.height || !object.height_problem.empty();
-      if (!has_height && missing.compute_height.empty())
-        missing.compute_height = one_line(object.id);
+      if (!has_height && missing.outline_without_height.empty())
+        missing.outline_without_height = one_line(object.id);
     }
   }
   if (missing.crs || source.pose || source.base_on_terrain || source.vertical ||

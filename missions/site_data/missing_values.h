@@ -10,8 +10,8 @@ namespace skycap::missions::site_data {
 /// Required values that neither the file nor its source settings contain.
 struct MissingValues {
   bool crs = false, vertical = false;
-  bool base = false;           ///< Base height of outlines.
-  std::string compute_height;  ///< Name of the first outline without a height, or empty.
+  bool base = false;                   ///< Base height of outlines.
+  std::string outline_without_height;  ///< Name of the first outline without a height, or empty.
 };
 
 /// Returns the missing values of a source. Throws the same errors as read_prior() if the file

@@ -106,8 +106,8 @@ void require_complete(const std::vector<Source>& files) {
       add(what, "coordinate reference system");
       add(remedy, "--crs such as EPSG:25832");
     }
-    if (!missing.compute_height.empty()) {
-      add(what, "height of " + missing.compute_height);
+    if (!missing.outline_without_height.empty()) {
+      add(what, "height of object " + missing.outline_without_height);
       add(remedy, "--height METRES");
     }
     if (missing.base) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <set>
 
 #include <gdal_priv.h>
 #include <ogrsf_frmts.h>
@@ -47,6 +48,7 @@ class MapReader {
   GDALDataset& dataset_;
   FileContents& contents_;
   std::string driver_;
+  std::set<std::string> names_;  ///< Values of `name` that identify an object.
   bool has_system_ = false;
   /// Units of the layer per metre at the feature.
   Eigen::Vector2d units_per_metre_ = Eigen::Vector2d::Ones();
@@ -171,8 +173,10 @@ void MapReader::read_altitudes(FileObject& object, double max_height) {
 }
 
 void MapReader::read_attributes(OGRFeature& feature, FileObject& object) {
-  constexpr std::array<const char*, 8> identifiers = {
-      "id", "gml_id", "osm_way_id", "osm_id", "uuid", "identifier", "Name", "EntityHandle"};
+  // GDAL calls the KML element `Name`; Overpass writes `@id`; GeoJSON often has only `name`.
+  constexpr std::array<const char*, 10> identifiers = {
+      "id",   "gml_id",     "osm_way_id", "osm_id",       "@id",
+      "uuid", "identifier", "Name",       "EntityHandle", "name"};
   const OGRFeatureDefn& fields = *feature.GetDefnRef();
   for (int i = 0; i < fields.GetFieldCount(); ++i) {
     if (feature.IsFieldSetAndNotNull(i) == 0) continue;
@@ -187,6 +191,8 @@ void MapReader::read_attributes(OGRFeature& feature, FileObject& object) {
   for (const char* identifier : identifiers) {
     const auto found = object.attributes.find(identifier);
     if (found == object.attributes.end() || found->second.empty()) continue;
+    // Values of `name` can repeat. Later objects with the same name get their numbers.
+    if (identifier == identifiers.back() && !names_.insert(found->second).second) break;
     object.id = found->second;
     return;
   }

@@ -245,7 +245,7 @@ TEST_F(Site, ListsAllThatIsMissingAtOnce) {
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_THAT(
       run.err,
-      HasSubstr("map.geojson: missing height of cube, base height of outlines; set --height "
+      HasSubstr("map.geojson: missing height of object cube, base height of outlines; set --height "
                 "METRES, --base ground, --base METRES with --vertical, or --terrain FILE"));
 }
 

@@ -136,6 +136,18 @@ TEST_F(Map, ReadsOpenStreetMapBuildings) {
   EXPECT_NEAR(volume(prior.objects[0].mesh), ring_area * 9.0, 1.0);
 }
 
+TEST_F(Map, IdentifiesGeoJsonFeaturesByUniqueNames) {
+  const std::string text = R"({"type":"FeatureCollection","features":[)" +
+                           feature(R"({"name":"hall","height":7})", json_ring()) + "," +
+                           feature(R"({"name":"hall","height":8})", json_ring()) + "," +
+                           feature(R"({"@id":"way/5","name":"barn","height":9})", json_ring()) +
+                           "]}";
+  const Prior prior = read("names.geojson", text);
+  std::vector<std::string> ids;
+  for (const auto& object : prior.objects) ids.push_back(object.id);
+  EXPECT_THAT(ids, testing::ElementsAre("hall", "1", "way/5"));
+}
+
 TEST_F(Map, CutsCourtyardsOut) {
   const std::string hole =
       "[[9.00005,48.00005],[9.00015,48.00005],[9.00015,48.00015],[9.00005,48.00015],"
