@@ -147,14 +147,14 @@ def is_message(text):
     """Returns true if a string is a sentence. Names of keys, options and fields are arguments as
     well."""
     words = re.findall(r"[A-Za-z]{2,}", text)
-    return len(words) >= 3 and ("; " in text or VERB.search(text) is not None)
+    return " " in text and len(words) >= 3 and ("; " in text or VERB.search(text) is not None)
 
 
 def messages_in(source):
     """Returns the messages of a source in order, without duplicates: (problem, remedy)."""
     found = {}
     for text in texts_in(source):
-        text = re.sub(r"\{(?::[^{}]*)?\}", VALUE, text)  # replacement field of a format string
+        text = re.sub(r"\{\d*(?::[^{}]*)?\}", VALUE, text)  # replacement field of a format string
         text = re.sub(r"\s+", " ", re.sub(f"(?:{VALUE})+", VALUE, text)).strip(" :,")
         if is_message(text):
             problem, _, remedy = text.rpartition("; ")

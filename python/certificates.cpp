@@ -83,7 +83,7 @@ void bind_certificate(py::module_& module) {
           "Former name of is_clear.")
       .def_property_readonly(
           "clearance", [](const Certificate& c) { return c.verification.clearance; },
-          "Verified lower bound of the distance over the leg, in metres; at most 10 m above "
+          "Verified lower bound on the clearance along the leg, in metres, capped at 10 m above "
           "the\nrequired clearance.")
       .def_readonly("obstacle", &Certificate::obstacle,
                     "Name of the nearest obstacle; '' if nothing is in range.")

@@ -110,7 +110,7 @@ void bind_simulation(py::module_& module) {
       .def_property_readonly("first_view", &Simulation::first_view, "First view of plan().")
       .def("scan", &simulated_scan, py::arg("view"), py::arg("frame"),
            "scan($self, view, frame)\n--\n\nSimulates a scan from `view`. Its noise depends on the "
-           "mission's seed and on `frame`,\nthe 0-based number of the scan. Returns (points, "
+           "mission's seed and on `frame`,\nthe 0-based index of the scan. Returns (points, "
            "world_from_sensor, pixels), the\narguments of Planner.next_view: "
            "planner.next_view(*simulation.scan(v, 0)).");
 }

@@ -130,7 +130,8 @@ void bind_step(py::module_& module) {
 
 void bind_clouds(py::module_& module) {
   const char* xyz = "World frame, in metres: float32, shape (N, 3); read-only, not copied.";
-  const char* views = "0-based number of the scan of each point: uint32, shape (N,); read-only.";
+  const char* views =
+      "0-based index of the scan that measured each point: uint32, shape (N,); read-only.";
   py::class_<ShownCloud>(
       module, "PlannerCloud",
       "The measurements kept by a planner. While this object or one of its arrays is alive, the\n"

@@ -22,8 +22,8 @@ class CoverageEstimator {
   /// Returns the complete estimate of the surface.
   virtual surfel::SurveyEstimate estimate() const = 0;
 
-  /// Returns the name of the stop rule that ended the survey, as used in files, such as
-  /// "target_coverage" or "min_gain". Returns "running" if no stop rule has ended it.
+  /// Returns the name of the stopping rule that ended the survey, as used in files, such as
+  /// "target_coverage" or "min_gain". Returns "running" if no stopping rule has ended it.
   virtual std::string_view stop_rule() const = 0;
 
   /// Returns a gain field that predicts how views would cover the measured surface from an empty

@@ -73,7 +73,7 @@ FlightLog read_csv_log(std::string_view text, std::size_t max_samples) {
       fail(number, "has a time that is not later than that of the previous line");
     }
   }
-  if (log.samples.empty()) fail(number, "is the last line: the log contains no samples");
+  if (log.samples.empty()) fail(number, "must be followed by at least one sample");
   return log;
 }
 

@@ -84,7 +84,8 @@ inline constexpr double clearance_guard = 1e-6;
 /// Result of the verification of a leg.
 struct LegVerification {
   bool is_verified;  ///< True if every point of the leg keeps the clearance.
-  /// Verified lower bound on the distance of the leg [m], at most `up_to` of verify().
+  /// Verified lower bound on the distance between the leg and the nearest obstacle [m], at most
+  /// `up_to` of verify().
   double clearance;
   Closest closest;
 };

@@ -234,7 +234,7 @@ class MissionFlight {
     if (departure_.length() > 0.0) {
       return add_problem(
           item,
-          "is flown to with an active camera trigger, but the exact start of its leg is unknown");
+          "is reached with the camera trigger active, but the exact start of the leg is unknown");
     }
     append_passes(route_, photo_spacing_,
                   autopilot_ == AutopilotType::ardupilot ? next_yaw_deg_ : item.params[3],

@@ -428,7 +428,8 @@ void check_pad(const Vector3d& stated, const Vector3d& pad, Problems& problems) 
   const double level = (stated - pad).head<2>().norm(), up = stated.z() - pad.z();
   if (level <= pad_tolerance && std::abs(up) <= pad_height_tolerance) return;
   problems.push_back("in template.kml, wpml:takeOffRefPoint is " + fixed(level, 1) +
-                     " m from and " + fixed(up, 1) + " m above the take-off point");
+                     " m horizontally and " + fixed(up, 1) +
+                     " m vertically from the mission's take-off point");
 }
 
 }  // namespace

@@ -144,9 +144,9 @@ Motion::Motion(const Vehicle& vehicle, const Conditions& conditions)
   if (!(rotor_power > 0.0) || !(efficiency_ < 1.0)) {
     throw Error(ErrorKind::bad_config,
                 "vehicle \"" + vehicle.name + "\": an endurance of " +
-                    std::to_string(vehicle.endurance_min) + " min requires " +
+                    std::to_string(vehicle.endurance_min) + " min corresponds to a power of " +
                     std::to_string(data_sheet_power(vehicle)) +
-                    " W, which is less than the power for hovering with its mass");
+                    " W, which is less than the power required to hover at this mass");
   }
   const double density_ratio = conditions.air_density / sea_level_density;
   induced_speed_ = std::sqrt(thrust / (2.0 * conditions.air_density * disc_area(vehicle)));

@@ -9,7 +9,7 @@
 namespace skycap::flight {
 
 /// Adds curves of the style in `route.options` to its legs or sorties. A curve is added only if it
-/// is verified and takes no more time and energy than the flight with stops. If the route has
+/// is verified and takes no more time or energy than the flight with stops. If the route has
 /// returns, every point of the curve must have one, too.
 void add_curves(Route& route, const FreeSpace& space, const Motion& motion, const LegCosts& costs);
 

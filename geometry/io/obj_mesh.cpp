@@ -105,9 +105,9 @@ class ObjReader {
     const auto count = static_cast<std::int64_t>(soup_.vertices.size());
     const std::int64_t vertex = index > 0 ? index - 1 : index + count;
     if (index == 0 || vertex < 0 || vertex > std::numeric_limits<std::uint32_t>::max()) {
-      scanner_.fail("the face refers to vertex " + std::to_string(index) + ", but only " +
+      scanner_.fail("the face refers to vertex " + std::to_string(index) + ", but " +
                     std::to_string(count) +
-                    " vertices precede it, counted from 1 or backwards from -1");
+                    " vertices precede it; indices count from 1, or backwards from -1");
     }
     return static_cast<std::uint32_t>(vertex);
   }

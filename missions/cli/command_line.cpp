@@ -48,7 +48,7 @@ void add_plan(CLI::App& app, const Console& console, Action& action) {
   command->add_option("--out", options->out, "Folder for the results (default: results/NAME)");
   command->add_option(
       "--planner", keys->planner,
-      planner_list() + ", or a file of your own (.so, .py); overrides the mission file");
+      planner_list() + ", or a custom planner file (.so, .py); overrides the mission file");
   command->add_option("--seed", keys->seed, "Random seed; overrides the mission file");
   command->add_option("--threads", keys->threads, "Number of threads (0: all processors)");
   command->add_option("--max-views", keys->max_views, "Maximum number of views");
@@ -79,12 +79,12 @@ void add_benchmark(CLI::App& app, const Console& console, Action& action) {
   command->add_option("missions", options->missions, "Mission files")->required();
   command
       ->add_option("--planners", options->planners,
-                   "Planners: all (those of the paper), names such as see++,oa,skycap, or files of "
-                   "your own planners (.so, .py)")
+                   "Planners: all (those in the paper), names such as see++,oa,skycap, or custom "
+                   "planner files (.so, .py)")
       ->delimiter(',');
   command
       ->add_option("--set-views", options->set_views,
-                   "Numbers of views of the fixed sets of uniform and random (default: "
+                   "Numbers of views for the planners uniform and random (default: "
                    "5,8,10,12,15,20,25,30,40,60,100)")
       ->check(CLI::Range(1, 10'000))
       ->delimiter(',');
@@ -260,8 +260,8 @@ void add_evaluate(CLI::App& app, const Console& console, Action& action) {
   what->add_option("--mesh", options->mesh,
                    "Mesh instead of a cloud, for example from skycap reconstruct");
   what->add_option("--flight", options->flight,
-                   "Flight instead of a cloud (t,x,y,z,yaw,pitch as CSV); --model is an inspection "
-                   "mission");
+                   "Flight instead of a cloud: CSV file with t,x,y,z,yaw,pitch; --model must be an "
+                   "inspection mission");
   what->require_option(1);
   command
       ->add_option("--model", options->model,

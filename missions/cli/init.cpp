@@ -170,15 +170,15 @@ Proposal proposal_for(const InitOptions& options) {
 std::string head_text(const InitOptions& options) {
   const std::string name = yaml_quoted(options.out.stem().string());
   if (options.is_room()) {
-    return "# Live survey of a room, written by `skycap init`. Read each line and adapt it to "
-           "your\n"
-           "# room. Then: skycap next " +
+    return "# Mission file for a live survey of a room, created by `skycap init`. Check each line "
+           "and\n# adapt it to your room. Then run: skycap next " +
            options.out.string() +
            " --survey survey\n"
            "name: " +
            name + "  # name of the results\n";
   }
-  return "# Survey of a model, written by `skycap init`. Read each line and adapt it. Then:\n"
+  return "# Mission file for a survey of a model, created by `skycap init`. Check and adapt each "
+         "line.\n# Then run:\n"
          "# skycap check " +
          options.out.string() + " and skycap plan " + options.out.string() + "\nname: " + name +
          "  # name of the results\n"
@@ -364,7 +364,8 @@ std::string photo_mission_text(const InitOptions& options) {
   const wizard::PhotoValues values = wizard::propose_photos(options.sensor, *options.gsd, vehicle,
                                                             clearance, uncertainty, is_coarse);
   return fmt::format(
-             "# Photos of a model, written by `skycap init`. Read each line and adapt it. Then:\n"
+             "# Mission file for photos of a model, created by `skycap init`. Check and adapt each "
+             "line.\n# Then run:\n"
              "# skycap check {0} and skycap plan {0}\n"
              "name: {1}  # name of the results\n"
              "prior:\n"

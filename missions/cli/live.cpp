@@ -428,8 +428,9 @@ void add_fly(CLI::App& app, const Console& console, Action& action) {
                    "Action on failure. hold (default): hold position until a pilot takes control. "
                    "return: return along the verified path where possible")
       ->check(CLI::IsMember({"hold", "return"}));
-  command->add_option("--intrinsics", options->intrinsics,
-                      "Camera intrinsics of depth images, as for next");
+  command->add_option(
+      "--intrinsics", options->intrinsics,
+      "Camera intrinsics of depth images, in the format of skycap next --intrinsics");
   command
       ->add_option("--depth-unit", options->depth_unit,
                    "Depth of one step of 16-bit images, in metres (default: 0.001)")

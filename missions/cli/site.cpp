@@ -286,7 +286,7 @@ void add_site(CLI::App& app, const Console& console, Action& action) {
                       "the height of the take-off point");
   command
       ->add_option("--height", options->height,
-                   "Height of outlines that contain no height, in metres")
+                   "Height in metres for outlines without a height attribute")
       ->check(number_between(0.01, 1e4));
   command->add_option("--terrain", options->terrain,
                       "Terrain file; sets the base height of outlines");

@@ -181,7 +181,7 @@ std::vector<Key> conduct_keys() {
       number_key("flight.battery_temperature", "degrees Celsius", between(-40, 60),
                  flight(&flight::FlightOptions::temperature),
                  "Battery temperature. Cold batteries hold less energy."),
-      number_key("flight.reserve", "share", between(0, 0.9),
+      number_key("flight.reserve", "fraction", between(0, 0.9),
                  flight(&flight::FlightOptions::reserve),
                  "Fraction of the battery left at the landing of every sortie."),
       otherwise(

@@ -15,7 +15,7 @@ std::vector<Key> motion_keys() {
       otherwise("2, or the vehicle's maximum if that is less",
                 number_key("inspection.max_speed", "m/s", above(0, 100),
                            inspection(&InspectionSection::max_speed),
-                           "Maximum speed. The flight is at this speed most of the time. The "
+                           "Maximum speed. The vehicle flies at this speed most of the time. The "
                            "vehicle's maximum climb and descent also apply.")),
       otherwise("1, or the vehicle's maximum if that is less",
                 number_key("inspection.max_acceleration", "m/s^2", above(0, 100),
@@ -48,9 +48,9 @@ std::vector<Key> coverage_keys() {
                          ".laz, .e57 or .xyz), relative to the mission file. The median distance "
                          "of the 6th nearest point is kept in addition to flight.clearance, for "
                          "the surface between the points.")),
-      number_key("inspection.share", "share", above(0, 1), inspection(&InspectionSection::share),
+      number_key("inspection.share", "fraction", above(0, 1), inspection(&InspectionSection::share),
                  "Required fraction of the attainable points: points that are visible from at "
-                 "least one of the positions of candidate views."),
+                 "least one candidate view position."),
       angle_key("inspection.max_incidence_deg", above(0, 89),
                 inspection(&InspectionSection::max_incidence),
                 "Maximum angle of incidence at which a point counts as seen."),
@@ -73,8 +73,8 @@ std::vector<Key> inspection_keys() {
        motion_keys(),
        {integer_key("inspection.moves", "", between(1, 100'000'000),
                     inspection(&InspectionSection::moves),
-                    "Budget of each search, in tried changes of the route. More moves give "
-                    "shorter flights and take longer to plan."),
+                    "Budget of each search: number of route changes (moves) to try. More moves "
+                    "give shorter flights but longer planning times."),
         integer_key("inspection.searches", "", between(1, 1000),
                     inspection(&InspectionSection::searches),
                     "Number of independent searches, of which the best flight is used. They run "

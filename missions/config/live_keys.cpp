@@ -14,8 +14,8 @@ auto live(auto member) {
 std::vector<Key> live_keys() {
   return {
       boolean_key("live.pose_check", live(&online::LiveOptions::checks_poses),
-                  "Reject scans of a live survey whose pose is inconsistent with the map (with a "
-                  "warning)."),
+                  "In a live survey, reject scans whose pose is inconsistent with the map, and "
+                  "issue a warning."),
       number_key(
           "live.pose_sigma", "m", between(0, 100), live(&online::LiveOptions::pose_sigma),
           "Standard deviation of the position along each axis, for scans that do not specify it."),

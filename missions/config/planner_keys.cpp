@@ -50,7 +50,8 @@ std::vector<Key> which_planner() {
           "none",
           text_key(
               "planner.file", [](auto& m) -> auto& { return m.planner.file; },
-              "Planner of your own for planner.name external: a shared library (.so) or a Python "
+              "Custom planner, used if planner.name is external: a shared library (.so) or a "
+              "Python "
               "file (.py), relative to the mission file. The file is code: it is executed only if "
               "the command line names it (--planner FILE), never because a mission file does.")),
       choice_key(
@@ -94,9 +95,10 @@ std::vector<Key> density_keys() {
                   see(&See::visibility_update_limit),
                   "tau: number of views nearest to the sensor that are updated after a scan."),
       otherwise("ceil(4/3 pi r^3 rho); in preset building 1.09 (r/epsilon)^2, rounded, if larger",
-                integer_key(
-                    "planner.core_threshold", "points", between(1, 1e6), see(&See::core_threshold),
-                    "k: minimum number of points within r, including itself, of a core point.")),
+                integer_key("planner.core_threshold", "points", between(1, 1e6),
+                            see(&See::core_threshold),
+                            "k: minimum number of points within r of a core point, including the "
+                            "core point itself.")),
       otherwise(
           "rho^(-1/2), or 0.8 evaluation.coverage_distance if smaller, but at least the distance "
           "between adjacent camera rays at the view distance",
@@ -117,11 +119,10 @@ std::vector<Key> density_keys() {
                  "Neighbours that turn a point near a core point into a frontier. non_core: any "
                  "other non-core point. labelled: a point labelled as an outlier (released code; "
                  "depends on the order)."),
-      otherwise(
-          "k",
-          integer_key(
-              "planner.frame_neighbours", "points", between(3, 1000), see(&See::frame_neighbours),
-              "Number of nearest points, including itself, used to estimate a frontier's normal.")),
+      otherwise("k", integer_key("planner.frame_neighbours", "points", between(3, 1000),
+                                 see(&See::frame_neighbours),
+                                 "Number of nearest points used to estimate a frontier's normal, "
+                                 "including the frontier point itself.")),
       boolean_key("planner.free_space_normals", see(&See::free_space_normals),
                   "Flip normals that point into measured surface."),
   };
@@ -142,7 +143,8 @@ std::vector<Key> occlusion_keys() {
       choice_key(
           "planner.cap.policy", {"local", "global", "nonlinear_program"},
           [](auto& m) -> auto& { return m.planner.see.cap.policy; },
-          "Choice of the unoccluded direction. local: downhill from the observing direction. "
+          "Choice of the unoccluded direction. local: descent from the observing direction to a "
+          "local optimum. "
           "global: centre of the largest empty cap. nonlinear_program: solution of the published "
           "nonlinear program with NLopt."),
       integer_key(
@@ -202,12 +204,12 @@ std::vector<Key> skycap_keys() {
   };
   return {
       number_key(
-          "planner.target_coverage", "share", above(0, 1), stop(&Stop::target_coverage),
+          "planner.target_coverage", "fraction", above(0, 1), stop(&Stop::target_coverage),
           "The survey ends when skycap estimates that this fraction of the surface is covered."),
-      number_key("planner.min_gain", "share", between(0, 1), stop(&Stop::min_gain),
+      number_key("planner.min_gain", "fraction", between(0, 1), stop(&Stop::min_gain),
                  "The survey ends when no view is predicted to add at least this fraction of the "
                  "known surface. If seven times the largest area covered by one view is smaller "
-                 "than the known surface, the fraction refers to that area. Planner skycap only."),
+                 "than the known surface, it replaces the known surface. Planner skycap only."),
       ablation_switch(
           "coverage_model", &Switches::coverage_model,
           "weight surface observations by their noise; off: one observation is sufficient."),

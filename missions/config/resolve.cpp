@@ -71,8 +71,8 @@ sim::LidarConfig read_scanner(const MissionDocument& document, int& wpml_payload
   if (lidar == nullptr) {
     throw Error(ErrorKind::bad_config,
                 *document.sensor.lidar +
-                    " is a camera; set sensor.preset to a camera preset, or its values with the "
-                    "other keys of sensor");
+                    " is a camera, but sensor.lidar requires a LiDAR; remove sensor.lidar and set "
+                    "sensor.preset or the other keys of sensor");
   }
   return *lidar;
 }

@@ -21,16 +21,17 @@ std::vector<Key> uniform_keys() {
   return {
       integer_key("uniform.views", "views", between(1, 1e4), fixed(&FixedViewSettings::views),
                   "N: total number of views of the planners uniform and random, including the "
-                  "first view. The views are on the sphere of the section volumetric, whose centre "
-                  "and radius are those of the true surface by default."),
-      choice_key("uniform.set", {"fibonacci", "rings", "random"}, fixed(&FixedViewSettings::set),
-                 "Distribution of the views of uniform: Fibonacci lattice, horizontal rings, or "
-                 "independent directions (the planner random)."),
+                  "first view. The views are on the sphere that the section volumetric defines. By "
+                  "default, its centre and radius are computed from the true surface."),
+      choice_key(
+          "uniform.set", {"fibonacci", "rings", "random"}, fixed(&FixedViewSettings::set),
+          "Distribution of the views of the planner uniform. fibonacci: Fibonacci lattice. "
+          "rings: horizontal rings. random: independent directions, as for the planner random."),
       integer_key("uniform.rings", "rings", between(1, 1000), fixed(&FixedViewSettings::rings),
-                  "Number of rings of the set rings."),
+                  "Number of rings with uniform.set: rings."),
       choice_key("uniform.order", {"tour", "spread"}, fixed(&FixedViewSettings::order),
-                 "Order of the views of uniform and random: a short open tour, or each view "
-                 "farthest from the earlier ones."),
+                 "Order of the views of the planners uniform and random. tour: short open tour. "
+                 "spread: each view is the one farthest from all earlier views."),
   };
 }
 
@@ -38,7 +39,7 @@ std::vector<Key> pb_nbv_keys() {
   return {
       integer_key("pb_nbv.views", "views", between(1, 1e6), pb(&PbNbvSettings::views),
                   "Total number of views of the planners pb-nbv and pb-nbv-released, which have no "
-                  "stop rule."),
+                  "stopping rule."),
       integer_key("pb_nbv.candidates", "views", between(1, 1e6), pb(&PbNbvSettings::candidates),
                   "N: approximate number of candidate views."),
       integer_key("pb_nbv.parallels", "", between(2, 1000), pb(&PbNbvSettings::parallels),

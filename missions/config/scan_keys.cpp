@@ -42,8 +42,8 @@ std::vector<Key> navigation_keys() {
   return {
       number_key("scan.navigation.horizontal_sigma", "m", between(0, 100),
                  navigation(&Navigation::horizontal_sigma),
-                 "Standard deviation of the estimated position, east and north each, in scans and "
-                 "in surveys with a vehicle."),
+                 "Standard deviation of the estimated position along each horizontal axis (east "
+                 "and north), in scans and in surveys with a vehicle."),
       number_key("scan.navigation.vertical_sigma", "m", between(0, 100),
                  navigation(&Navigation::vertical_sigma),
                  "Standard deviation of the estimated height."),

@@ -56,10 +56,10 @@ std::vector<Key> sensor_keys() {
       text_key(
           "sensor.preset", [](auto& m) -> auto& { return m.sensor.preset; },
           "Camera preset (skycap presets) whose values the keys below override. d435: Intel "
-          "RealSense D435 of the paper (848 x 480 pixels, 69.4 x 42.5 degrees, no maximum range); "
-          "intel_d435: the same with its real errors and range. high_resolution: camera of the "
-          "paper for buildings (2400 x 1750 pixels, 60 x 40 degrees). LiDAR presets: "
-          "sensor.lidar."),
+          "RealSense D435 as modelled in the paper (848 x 480 pixels, 69.4 x 42.5 degrees, no "
+          "maximum range); intel_d435: the same camera with its real errors and range. "
+          "high_resolution: the paper's camera for buildings (2400 x 1750 pixels, 60 x 40 "
+          "degrees). For LiDAR presets, see sensor.lidar."),
       lidar_key(),
       photo_camera_key(),
       integer_key("sensor.width", "px", between(1, 32768), image(&geometry::CameraConfig::width),
@@ -83,8 +83,8 @@ std::vector<Key> sensor_keys() {
       number_key(
           "sensor.exposure", "s", between(0, 10),
           [](auto& m) -> auto& { return m.sensor.options.shutter.exposure; },
-          "Exposure time of an image. A flown view takes at least the exposure plus the readout "
-          "time; the summary states the motion blur."),
+          "Exposure time of an image. With a vehicle, the time per capture is at least the "
+          "exposure plus the readout time; the summary states the motion blur."),
       number_key(
           "sensor.readout", "s", between(0, 10),
           [](auto& m) -> auto& { return m.sensor.options.shutter.readout; },
@@ -97,7 +97,8 @@ std::vector<Key> sensor_keys() {
       choice_key(
           "sensor.capture", {"stops", "moving"},
           [](auto& m) -> auto& { return m.sensor.options.capture; },
-          "Capture mode of a flown survey. stops: at views only. moving: also en route between "
+          "Capture mode of a survey with a vehicle. stops: at views only. moving: also en route "
+          "between "
           "views; requires a vehicle and the planner skycap."),
       frame_period_key(),
       number_key("sensor.noise.sigma", "m", between(0, 1e3), noise(&sim::NoiseConfig::sigma),

@@ -55,11 +55,11 @@ std::vector<Key> limits_keys() {
       angle_key(
           "limits.max_pitch_deg", between(-right_angle, right_angle),
           [](auto& m) -> auto& { return m.limits.max_pitch; }, "Maximum pitch of the gimbal."),
-      otherwise("unlimited",
-                number_key(
-                    "limits.max_minutes", "min", above(0),
-                    [](auto& m) -> auto& { return m.limits.max_minutes; },
-                    "Maximum duration of the survey, computed from the two keys below.")),
+      otherwise("unlimited", number_key(
+                                 "limits.max_minutes", "min", above(0),
+                                 [](auto& m) -> auto& { return m.limits.max_minutes; },
+                                 "Maximum duration of the survey. The duration is estimated from "
+                                 "limits.speed and limits.time_per_view.")),
       number_key(
           "limits.speed", "m/s", above(0, 1e3),
           [](auto& m) -> auto& { return m.limits.options.speed; },
@@ -86,7 +86,7 @@ std::vector<Key> evaluation_keys() {
           "evaluation.visible_directions", "", between(1, 1e4),
           [](auto& m) -> auto& { return m.evaluation.visible_directions; },
           "Number of directions in which the visibility of a sample from the view distance is "
-          "tested. A sample without an unoccluded direction is not visible surface."),
+          "tested. A sample is visible if at least one of these directions is unoccluded."),
       integer_key(
           "evaluation.attainable_views", "", between(0, 1e4),
           [](auto& m) -> auto& { return m.evaluation.attainable_views; },
@@ -109,7 +109,7 @@ std::vector<Key> paper_keys() {
                     "paper.views", "", above(0), [](auto& m) -> auto& { return m.paper.views; },
                     "Published number of views, printed next to the results of trials.")),
       otherwise(tables_row, number_key(
-                                "paper.coverage", "share", between(0, 1),
+                                "paper.coverage", "fraction", between(0, 1),
                                 [](auto& m) -> auto& { return m.paper.coverage; },
                                 "Published coverage of a survey.")),
       otherwise(tables_row, number_key(

@@ -148,9 +148,8 @@ std::string evaluation_text(const FlightEvaluation& evaluation) {
       percent(evaluation.share(incidence_rule)), evaluation.points,
       percent(evaluation.share(solid_rule)), percent(evaluation.share(pixel_rule)));
   text += fmt::format(
-      "  views     {:.0f} of a point (median, one every 0.5 s), {:.0f} or more of 90% of the "
-      "points, "
-      "nearest at {:.2f} m (median)\n",
+      "  views     median {:.0f} per point (one view every 0.5 s), at least {:.0f} for 90% of the "
+      "points; median distance of the nearest view {:.2f} m\n",
       evaluation.views.median, evaluation.views.percentile_10, evaluation.median_view_distance);
   text += "  motion    " + limit_text("speed", evaluation.speed, "m/s") + ", " +
           limit_text("acceleration", evaluation.acceleration, "m/s^2") + ", " +
@@ -221,8 +220,9 @@ std::string plan_text(const config::MissionSetup& setup, const InspectionMission
       "  start     ({:.2f}, {:.2f}, {:.2f}), end ({:.2f}, {:.2f}, {:.2f}), both at rest\n",
       start.position.x(), start.position.y(), start.position.z(), end.position.x(),
       end.position.y(), end.position.z());
-  return text + fmt::format("  search    {} changes evaluated; the first tour took {:.0f} s\n",
-                            plan.evaluated_moves, plan.first_duration);
+  return text +
+         fmt::format("  search    {} changes evaluated; flight time of the initial tour {:.0f} s\n",
+                     plan.evaluated_moves, plan.first_duration);
 }
 
 std::string warnings_text(const InspectionMission& mission) {

@@ -276,7 +276,7 @@ std::string figures(const FieldSheetSite& site, const SurveyMission& mission) {
   if (mission.written) {
     const WrittenCoverage& part = mission.written->parts.front();
     coverage = percent_text(part.again.visible.value_or(part.again.all));
-    of = fmt::format("of the {}surface, covered by the route files; {} of {} views",
+    of = fmt::format("of the {}surface covered by the route files ({} of {} views)",
                      part.again.visible ? "visible " : "", part.views, mission.written->planned);
   }
   return "<div class=\"figures\">" +

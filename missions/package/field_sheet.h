@@ -29,7 +29,7 @@ struct FieldSheetSite {
   std::string sensor;   ///< Sensor name for display.
   double survey_coverage = 0.0;
   std::string coverage_of =
-      "of the surface, covered by the survey";  ///< Meaning of `survey_coverage`.
+      "of the surface covered by the survey";  ///< Meaning of `survey_coverage`.
   /// Sample positions on the surface to be surveyed, for the map. May be empty.
   std::span<const Eigen::Vector3f> surface{};
   /// For each sample position, 1 if the survey covers it. The coverage of the written files is used

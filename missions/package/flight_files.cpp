@@ -258,7 +258,7 @@ class RouteFiles {
     }
     if (options_.style != flight::FlightStyle::stop) {
       notes.push_back(name + " stops " + (is_fly_through ? "at every view and " : "") +
-                      "in every corner, because the format cannot define curves");
+                      "at every corner, because the format cannot define curves");
     }
     return plan;
   }

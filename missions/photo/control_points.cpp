@@ -64,7 +64,7 @@ std::vector<ControlPoint> read_control_points(const std::string& text,
     point.position = is_local ? values : frame->to_local({values.x(), values.y(), values.z()});
     points.push_back(std::move(point));
   }
-  if (points.empty()) fail(lines.size(), "is the last line: the file contains no points");
+  if (points.empty()) fail(lines.size(), "must be followed by at least one point");
   return points;
 }
 

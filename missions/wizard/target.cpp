@@ -89,7 +89,7 @@ std::vector<std::string> picked(const std::vector<Source>& files, const Pick& pi
   }
   throw Error(
       ErrorKind::bad_config,
-      fmt::format("{}: contains {} objects, {}{}; choose one with --id, --at or --attribute",
+      fmt::format("{}: contains {} objects ({}{}); choose one with --id, --at or --attribute",
                   source.file.string(), ids.size(), some, ids.size() > 5 ? ", ..." : ""));
 }
 

@@ -156,11 +156,13 @@ float fill_boxes(const RoundedMesh& mesh, std::size_t first, std::span<RTCBuildP
 void throw_on_device_error(RTCDevice device) {
   const RTCError error = rtcGetDeviceError(device);
   if (error == RTC_ERROR_NONE) return;
+  if (error == RTC_ERROR_OUT_OF_MEMORY) {
+    throw Error(ErrorKind::bad_geometry,
+                "out of memory while building the scene for ray casting; use a mesh with fewer "
+                "triangles");
+  }
   throw Error(ErrorKind::bad_geometry,
-              error == RTC_ERROR_OUT_OF_MEMORY
-                  ? "out of memory while building the scene for ray casting; use a mesh with fewer "
-                    "triangles"
-                  : "Embree cannot build the scene: error " + std::to_string(error));
+              "Embree cannot build the scene: error " + std::to_string(error));
 }
 
 void RayTree::Release::operator()(RTCBVHTy* tree) const {

@@ -348,7 +348,8 @@ ViewCandidates draw_candidates(const ReachableSpace& space, const SightCells& ce
   }
   if (nodes.empty()) {
     throw Error(ErrorKind::bad_geometry,
-                "no reachable position is between the clearance and the range of the structure; "
+                "no reachable position has a distance from the structure between the clearance and "
+                "the range; "
                 "lower the clearance or raise the range");
   }
   for (std::size_t i = 0; i + 1 < nodes.size() && i < options.candidates; ++i) {

@@ -68,7 +68,8 @@ SpaceOptions space_options(const InspectionOptions& options, const InspectionSit
   }
   if ((space.box.sizes().array() <= 0.0).any()) {
     throw Error(ErrorKind::bad_geometry,
-                "the limits of height leave no space around the structure; check the limits");
+                "the height limits leave no space around the structure; check site.min_height and "
+                "site.max_height");
   }
   space.clearance = options.clearance;
   space.max_distance =
@@ -150,11 +151,11 @@ InspectionPlan verified_plan(const InspectionOptions& options, const InspectionS
   }
   throw Error(ErrorKind::bad_geometry,
               best_distance > 0.0
-                  ? joined_text("no flight of the search keeps the clearance of ",
+                  ? joined_text("the search found no flight that keeps the clearance of ",
                                 options.clearance, " m from all surfaces (best: ", best_distance,
-                                " m); raise the number of moves or lower the clearance")
-                  : "no flight of the search keeps the clearance and the limits of motion; raise "
-                    "the number of moves, or lower the clearance or the speed");
+                                " m); raise inspection.moves or lower the clearance")
+                  : "the search found no flight that keeps the clearance and the motion limits; "
+                    "raise inspection.moves, or lower the clearance or inspection.max_speed");
 }
 
 }  // namespace
@@ -168,7 +169,7 @@ void InspectionOptions::validate() const {
   require(clearance > 0.0 && std::isfinite(clearance), "clearance must be positive");
   require(camera.range > clearance,
           joined_text("range (", camera.range, " m) must be greater than the clearance (",
-                      clearance, " m); raise range or lower the clearance"));
+                      clearance, " m); raise the range or lower the clearance"));
   require(pitch.min < pitch.max, "the minimum pitch must be less than the maximum pitch");
   for (const double share : goal.shares) {
     require(share >= 0.0 && share <= 1.0, "shares must be between 0 and 1");

@@ -171,8 +171,8 @@ void ReachableSpace::flood() {
   }
   if (open.empty()) {
     throw Error(ErrorKind::bad_geometry,
-                "no position around the structure keeps the clearance and the limits of height and "
-                "airspace; lower the clearance, or check the limits");
+                "no position around the structure keeps the clearance within the height and "
+                "airspace limits; lower the clearance or check the limits");
   }
   const std::array<Array3i, 6> steps{Array3i(1, 0, 0),  Array3i(-1, 0, 0), Array3i(0, 1, 0),
                                      Array3i(0, -1, 0), Array3i(0, 0, 1),  Array3i(0, 0, -1)};

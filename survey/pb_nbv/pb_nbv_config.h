@@ -22,7 +22,7 @@ enum class Region {
 
 /// Settings in a mission file. Symbols are those of the paper.
 struct PbNbvSettings {
-  std::size_t views = 10;        ///< total number of views; the method has no stop rule
+  std::size_t views = 10;        ///< total number of views; the method has no stopping rule
   std::size_t candidates = 800;  ///< N
   std::size_t parallels = 24;    ///< alpha
   std::size_t sectors = 4;       ///< beta: sectors visited before the choice is free

@@ -30,7 +30,7 @@ struct ScoredEllipsoid {
 double compute_score(std::span<const ScoredEllipsoid> ellipsoids, const geometry::View& view,
                      const ScoreImage& image, Reading reading);
 
-/// Has no stop rule: the number of views is limited by the survey. If no frontier is left, it
+/// Has no stopping rule: the number of views is limited by the survey. If no frontier is left, it
 /// continues; last_step().frontiers is zero then.
 class PbNbvPlanner final : public Planner {
  public:

@@ -69,7 +69,7 @@ struct SurfelConfig {
   double position_error = 0.0, angle_error = 0.0;
   /// Distance between en-route frames on straight paths to views [m]; zero: no en-route frames.
   double frame_spacing = 0.0;
-  /// Whether stop rules include the path to a view, for sensors whose single scans show little.
+  /// Whether stopping rules include the path to a view, for sensors whose single scans show little.
   bool counts_en_route = false;
   /// Whether the sensor measures only vertical lines, to the left of a level nose. The camera then
   /// represents the area swept within a frame spacing, and only paths measure.

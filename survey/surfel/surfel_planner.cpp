@@ -235,7 +235,7 @@ struct SurfelPlanner::Impl {
     return proposed;
   }
 
-  /// Returns the area to which the fractions of the stop rule refer [m^2].
+  /// Returns the area to which the fractions of the stopping rule refer [m^2].
   double reference_area() const {
     return std::min(map->area(), scans_per_object * max_covered_at_once);
   }

@@ -17,7 +17,7 @@ using Eigen::Vector3f;
 constexpr float min_promise = 0.2F, kept_prediction = 0.25F, broken_trust = 0.5F;
 
 /// Surfels with a smaller missing area, relative to the maximum, are not targets. Their sum is far
-/// below all stop rules.
+/// below all stopping rules.
 constexpr float min_weight_fraction = 2e-3F;
 constexpr float raster_spacing = 1.0F;  // pixel size at the view distance, in units of h
 

@@ -43,7 +43,7 @@ struct Choice {
   double gain;  ///< expected newly covered area of this view [m^2]
   std::vector<VisibleTarget>
       with_leg;  ///< targets in sight of the view and of the straight path to it
-  /// Expected gain of the best reachable view, for stop rules. Predicted surface is weighted by
+  /// Expected gain of the best reachable view, for stopping rules. Predicted surface is weighted by
   /// `prediction_yield`. With `counts_en_route`, the path to the view is included.
   double best_gain;
   /// Visibility of each target of the field: the probability that the best of several good views at

@@ -119,7 +119,7 @@ std::vector<const Method*> methods_by_name(const std::vector<std::string>& names
     if (name == "all" || find_method(name)) continue;
     throw Error(ErrorKind::bad_usage, "unknown planner '" + name +
                                           "'; expected all or names from " + known +
-                                          ", or a file of your own (.so, .py)");
+                                          ", or a custom planner file (.so, .py)");
   }
   return chosen;
 }

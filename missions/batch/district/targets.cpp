@@ -75,8 +75,9 @@ GeodeticPoint compute_origin(const std::vector<AlignedBox3d>& boxes,
   }
   if (!has_terrain && max_height - min_height > max_unevenness) {
     throw Error(ErrorKind::bad_config,
-                fmt::format("{}: the target heights differ by {:.1f} m, and the ground between the "
-                            "targets is unknown; set terrain or choose targets within {:g} m",
+                fmt::format("{}: the base heights of the targets differ by {:.1f} m, and the "
+                            "ground between the targets is unknown; set terrain or choose targets "
+                            "whose base heights differ by at most {:g} m",
                             map, max_height - min_height, max_unevenness));
   }
   GeodeticPoint origin = frame.to_geodetic(all.center());

@@ -28,6 +28,7 @@
 #include "missions/evaluation/surface_density.h"
 #include "missions/evaluation/survey_scene.h"
 #include "missions/evaluation/tally_file.h"
+#include "missions/scan/scan_journal.h"
 #include "missions/scene/scene_source.h"
 #include "missions/support/json_text.h"
 #include "missions/version.h"
@@ -378,9 +379,6 @@ int evaluate_shards(const EvaluateOptions& options, const Console& console) {
   if (!options.mesh.empty() || !options.out) {
     throw Error(ErrorKind::bad_usage, "--pieces requires --cloud and --out");
   }
-  if (!fs::is_regular_file(options.cloud)) {
-    throw Error(ErrorKind::bad_file, options.cloud.string() + ": does not exist");
-  }
   const batch::JobRequest job{.command = make_command(options),
                               .out = *options.out,
                               .title = "Evaluation of " + options.cloud.filename().string(),
@@ -392,10 +390,25 @@ int evaluate_shards(const EvaluateOptions& options, const Console& console) {
       [&] { return std::make_unique<CloudShards>(options, console); }, console);
 }
 
+/// Throws if the file to be evaluated does not exist. Loading the model can take much longer than
+/// this check. Warns about the cloud of an interrupted scan, which contains part of the flight.
+void check_input(const EvaluateOptions& options, const Console& console) {
+  const fs::path& file = options.mesh.empty() ? options.cloud : options.mesh;
+  if (!fs::is_regular_file(file)) {
+    throw Error(ErrorKind::bad_file, file.string() + ": does not exist");
+  }
+  if (fs::is_directory(file.parent_path() / scan::ScanJournal::folder_name)) {
+    warn(console, file.string() +
+                      ": the scan was interrupted; the cloud contains only the first part of the "
+                      "flight (continue it with skycap scan --resume)");
+  }
+}
+
 }  // namespace
 
 int evaluate(const EvaluateOptions& options, const Console& console) {
   if (!options.flight.empty()) return evaluate_flight_file(options, console);
+  check_input(options, console);
   if (options.density && (options.shards > 0 || options.cloud.empty())) {
     throw Error(ErrorKind::bad_usage, "--density requires --cloud and conflicts with --pieces");
   }

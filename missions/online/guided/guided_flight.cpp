@@ -275,9 +275,10 @@ MaybeFailure GuidedFlight::settle(const geometry::View& view) {
     const std::string failures = describe_failures(errors_at(view), limits_.arrival);
     if (!failures.empty()) since = link_.now();
     if (link_.now() > end) {
-      return rejected("timeout: the camera did not settle at " + position_text(position_) +
-                      " on the requested direction: " +
-                      (failures.empty() ? "it did not remain there for flight.hold" : failures));
+      return rejected(
+          "timeout: the camera did not settle at " + position_text(position_) +
+          " in the requested direction: " +
+          (failures.empty() ? "the pose was not held for the time flight.hold" : failures));
     }
   }
   return std::nullopt;

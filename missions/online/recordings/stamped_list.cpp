@@ -33,10 +33,8 @@ StampedList read_list(const std::filesystem::path& file) {
     list.lines.push_back({time, std::string(*word), std::move(rest)});
   } while (scanner.next_line());
   if (repeated > 0) {
-    list.notes.push_back(
-        fmt::format("{}: {} times are listed more than once; the last line of each "
-                    "is used",
-                    name, repeated));
+    list.notes.push_back(fmt::format(
+        "{}: lines ignored because a later line has the same timestamp: {}", name, repeated));
   }
   return list;
 }

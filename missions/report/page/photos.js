@@ -80,7 +80,7 @@ function photo_charts(data) {
   return element("section", { id: "curves" }, element("h2", {}, "Curves"), element("div", { class: "charts" },
     chart("Expected completeness vs. photos", "Expected completeness of the first photos of the plan, most useful first.", "line",
       [line("expected completeness", curve)], { x: "photos", ...y }),
-    minutes.length > 1 ? chart("Expected completeness vs. minutes", "Tour through the first photos with a stop at each, without the legs from and to the take-off point.",
+    minutes.length > 1 ? chart("Expected completeness vs. minutes", "Tour through the first photos with a stop at each, without the legs to and from the take-off point.",
       "line", [line("expected completeness", minutes)], { x: "minutes", ...y }) : null,
     histogram_chart("Ground sampling distance", "Minimum among the photos of a point, on a surface that faces the camera.", millimetres, "mm", 0),
     histogram_chart("Photos of a point", null, histograms.observations, "photos", 1),
@@ -90,7 +90,7 @@ function photo_charts(data) {
 }
 
 const how_photographed = [
-  ["Expected completeness", "Expected fraction of the exposed surface at which a photogrammetry program finds a depth within two ground sampling distances. It follows from the number of stereo partners and was fitted to simulated reconstructions."],
+  ["Expected completeness", "Expected fraction of the exposed surface at which a photogrammetry program finds a depth within two ground sampling distances of the true depth. It is computed from the number of stereo partners with a model fitted to simulated reconstructions."],
   ["Exposed surface", "Surface from which at least 10% of the directions are free. The rest, such as the inside of walls, is not counted."],
   ["Attainable surface", "Exposed surface with enough stereo partners if all candidate photos are taken."],
   ["Stereo partners", "Photos of the same point whose parallax is within the permitted range and whose distances differ by at most a factor of two. The number is the maximum for any photo of the point."],

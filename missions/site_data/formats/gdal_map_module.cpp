@@ -330,7 +330,9 @@ void MapReader::add_notes() {
     fail_file(file_, "contains no outlines and no other objects with a height (" + all + ")");
   }
   contents_.notes.insert(contents_.notes.end(), left_out.begin(), left_out.end());
-  add(thin_, " points and lines with a height are read as poles and walls of 0.5 to 1 m",
+  add(thin_,
+      " points and lines with a height are read as poles (at least 1 m wide) and walls (0.5 m "
+      "thick)",
       contents_.notes);
   add(extruded_, " polygons with the attribute extrude extend from their altitude to the ground",
       contents_.notes);

@@ -142,7 +142,7 @@ TEST(CsvLog, ReportsErrorsWithLineNumber) {
   rejects(header + "1,0,0\n", "line 2 has too few fields");
   rejects(header + "1,0,0,0,9\n1,0,0,0,9\n",
           "line 3 has a time that is not later than that of the previous line");
-  rejects(header, "the log contains no samples");
+  rejects(header, "must be followed by at least one sample");
 }
 
 TEST(CsvLog, RejectsMoreSamplesThanTheLimit) {

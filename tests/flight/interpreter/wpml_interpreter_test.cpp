@@ -128,8 +128,9 @@ TEST(WpmlInterpreter, RejectsChangedTakeOffPoint) {
                                   fixed(offset.height + up, 3));
   };
   EXPECT_THAT(reference(pad, 0.0), IsEmpty());
-  EXPECT_THAT(reference(pad, 30.0), Contains(HasSubstr("30.0 m above the take-off point")));
-  EXPECT_THAT(reference(elsewhere, 0.0), Contains(HasSubstr("takeOffRefPoint is 60.0 m from")));
+  EXPECT_THAT(reference(pad, 30.0), Contains(HasSubstr("30.0 m vertically from")));
+  EXPECT_THAT(reference(elsewhere, 0.0),
+              Contains(HasSubstr("takeOffRefPoint is 60.0 m horizontally")));
 }
 
 // The vehicle climbs to the security height, flies level, and descends to the first waypoint, which

@@ -194,7 +194,7 @@ TEST(Motion, RejectsInvalidLimits) {
   Vehicle heavy = good;
   heavy.mass = 20;
   EXPECT_THAT(error_message(heavy, {}),
-              HasSubstr("less than the power for hovering with its mass"));
+              HasSubstr("less than the power required to hover at this mass"));
   Vehicle still = good;
   still.mode.acceleration = 0;
   EXPECT_THAT(error_message(still, {}), HasSubstr("acceleration is 0"));

@@ -49,6 +49,10 @@ TEST_F(ResumedScan, MatchesUninterruptedLaserScan) {
     EXPECT_LT(fs::file_size(folder_.path() / "part" / name),
               fs::file_size(folder_.path() / "whole" / name));
   }
+  const std::vector<std::string> evaluation{
+      "evaluate",  "--model", folder_ / "cube.obj", "--cloud", folder_ / "part/scan.las",
+      "--samples", "1000"};
+  EXPECT_THAT(run_skycap(evaluation).err, HasSubstr("the scan was interrupted"));
   const auto run = run_skycap(scan("part", with(clouds_, {"--resume", "--threads", "2"})));
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.err, HasSubstr("resuming an interrupted scan"));

@@ -104,7 +104,7 @@ TEST(VehicleReader, ReportsLineOfErrors) {
   EXPECT_THAT(error_message(base + "camera: ouster_os1_64\n"),
               HasSubstr("kite.yaml:3: key camera: ouster_os1_64 is a LiDAR"));
   EXPECT_THAT(error_message(base + "mass: 20\n"),
-              HasSubstr("less than the power for hovering with its mass"));
+              HasSubstr("less than the power required to hover at this mass"));
   EXPECT_THAT(
       error_message("name: kite\nlike: dragon\n"),
       HasSubstr("kite.yaml:2: key like: unknown vehicle dragon; expected one of: generic, "));

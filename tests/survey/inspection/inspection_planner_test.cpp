@@ -188,7 +188,7 @@ TEST(PlanInspection, RejectsImpossibleClearancesWithOneLine) {
   InspectionOptions options = quick_options();
   options.clearance = 8.0;
   EXPECT_EQ(error_of(options, cube_site()),
-            "range (8 m) must be greater than the clearance (8 m); raise range or lower the "
+            "range (8 m) must be greater than the clearance (8 m); raise the range or lower the "
             "clearance");
   options.clearance = 3.0;
   InspectionSite site = cube_site();
@@ -197,8 +197,8 @@ TEST(PlanInspection, RejectsImpossibleClearancesWithOneLine) {
   options.camera.range = 4.0;
   site.distance = [](const Vector3d&, double) { return 1.0; };
   EXPECT_EQ(error_of(options, site),
-            "no position around the structure keeps the clearance and the limits of height and "
-            "airspace; lower the clearance, or check the limits");
+            "no position around the structure keeps the clearance within the height and airspace "
+            "limits; lower the clearance or check the limits");
 }
 
 TEST(PlanInspection, StopsOnRequest) {

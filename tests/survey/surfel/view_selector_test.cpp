@@ -226,7 +226,7 @@ TEST(ViewSelector, SelectsViewOfMissingSurface) {
   const auto choice = choose(field, anywhere, infinity, {});
   ASSERT_TRUE(choice);
   EXPECT_NEAR(field.gain(choice->view).area, choice->gain, 1e-9);
-  // For the stop rule, predictions count for less and undersampled surface counts in full.
+  // For the stopping rule, predictions count for less and undersampled surface counts in full.
   const surfel::Gain gain = field.gain(choice->view);
   EXPECT_GE(choice->best_gain, gain.area - gain.predicted);
   // Better than observing the same half again from the same distance, 2 m in front of the surface.
