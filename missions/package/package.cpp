@@ -339,10 +339,9 @@ PackageSummary parse_package_summary(const std::string& text, const std::string&
   try {
     const Json json = parse_summary(text, name);
     if (json.value("kind", std::string()) == "inspection") {
-      fail(
-          name,
-          "is an inspection: a continuous flight, which route files with waypoints cannot express; "
-          "use inspection.csv, setpoints.enu.csv, setpoints.ned.csv or camera.tum of the folder");
+      fail(name,
+           "is an inspection, whose route files `skycap plan` writes; use those of the folder, or "
+           "plan the mission again");
     }
     PackageSummary summary;
     summary.mission = mission_from_settings(json.at("settings"), name, overrides);
