@@ -96,9 +96,10 @@ class RoutePlanner {
       if (i > 0) problem.leg.push_back(compute_cost(route_.legs[i - 1]));
     }
     problem.energy_per_sortie = plannable_energy(legs_.motion());
-    problem.capture_points_per_sortie =
-        max_capture_points(legs_.motion().vehicle(),
-                           std::ranges::any_of(route_.capture_points, &CapturePoint::is_passed));
+    const bool are_passed = std::ranges::any_of(route_.capture_points, &CapturePoint::is_passed);
+    std::size_t& most = problem.capture_points_per_sortie;
+    most = max_capture_points(legs_.motion().vehicle(), are_passed);
+    if (are_passed && most > 1) --most;  // A sortie that resumes has one in addition.
 
     const SortieSplit split = split_into_sorties(problem);
     route_.duration = split.time;

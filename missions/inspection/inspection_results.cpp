@@ -12,6 +12,7 @@
 
 #include "flight/export/trajectory_file.h"
 #include "geometry/angle.h"
+#include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
 #include "missions/config/mission_document.h"
 #include "missions/inspection/flight_file.h"
@@ -153,6 +154,19 @@ void write_structure(const InspectionPlan& plan, geometry::OutputFolder& folder)
   columns.normals = plan.cloud.normals;
   columns.marks = {{"seen_pixel", pixel}, {"seen_solid", solid}, {"seen", incidence}};
   geometry::write_cloud(folder.stage(structure_name), columns);
+}
+
+/// Stages the route files. A format that cannot be written is a note.
+void stage_route_files(const config::MissionSetup& setup, const InspectionSpace& space,
+                       package::SurveyMission& flight, geometry::OutputFolder& folder) {
+  try {
+    flight.files = package::stage_flight(
+        setup.name, inspection_flight_options(space), flight.route, space.space(),
+        inspection_formats(flight.route.vehicle.autopilot), folder);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::bad_config && error.kind() != ErrorKind::bad_geometry) throw;
+    flight.files.notes.emplace_back(error.what());
+  }
 }
 
 Json vertices_json(const InspectionPlan& plan) {
@@ -310,10 +324,7 @@ void stage_inspection_mission(const config::MissionSetup& setup, const Inspectio
   folder.write(tum_name, write_tum(camera_poses(states)));
   write_structure(mission.plan, folder);
   if (mission.flight) {
-    package::SurveyMission& flight = mission.flight->mission;
-    flight.files = package::stage_flight(
-        setup.name, inspection_flight_options(space), flight.route, space.space(),
-        inspection_formats(flight.route.vehicle.autopilot), folder);
+    stage_route_files(setup, space, mission.flight->mission, folder);
   }
   Json summary{{"mission", setup.name},
                {"kind", "inspection"},

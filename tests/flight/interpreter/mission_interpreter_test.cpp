@@ -290,7 +290,8 @@ TEST_P(MissionInterpreter, VerifiesCornersWithoutStopAsTriangles) {
     MavlinkMission file = good();
     file.items.resize(2);
     const auto add = [&](const Eigen::Vector3d& position, double hold) {
-      MissionItem item{command::waypoint, frame::relative, {hold, 0.3, 0, 0, 0, 0, 0}, true, 0};
+      const double radius = hold > 0.0 ? 0.3 : 100.0;  // PX4 turns within the radius.
+      MissionItem item{command::waypoint, frame::relative, {hold, radius, 0, 0, 0, 0, 0}, true, 0};
       item.number = file.items.back().number + 1;
       move(item, position);
       file.items.push_back(item);

@@ -24,6 +24,7 @@
 #include "geometry/surfaces/mesh.h"
 #include "geometry/surfaces/mesh_distance.h"
 #include "missions/config/mission_document.h"
+#include "missions/config/preset_files.h"
 #include "missions/config/resolve.h"
 #include "missions/inspection/inspection_mission.h"
 #include "missions/inspection/inspection_results.h"
@@ -61,7 +62,7 @@ site: {latitude_deg: 51.7535, longitude_deg: -1.254, ellipsoid_height: 111.5, ge
 sensor: {photo_camera: mavic_3e_wide}
 inspection: {range: 7, share: 0.9, spacing: 0.25, moves: 1500, searches: 1}
 prior: [{file: block.obj, role: target, uncertainty: 0.1}]
-flight: {free_space: assumed, position_error: 0.1, clearance: 2, takeoff: [-20, 0, 0]}
+flight: {free_space: assumed, position_error: 0.1, clearance: 2}
 )";
 
 geometry::Mesh block() {
@@ -259,7 +260,14 @@ TEST_P(InspectionFlightTest, FliesTheFilesWithinTheVerifiedDeviation) {
 }
 
 TEST_P(InspectionFlightTest, ResumesALongFlightWhereItWasCut) {
-  const config::MissionSetup setup = read(GetParam(), {{"--set", "flight.reserve", "0.93"}});
+  // A vehicle whose missions have few items.
+  std::string profile =
+      config::preset_text("vehicle", GetParam(), config::vehicle_preset_files()).text;
+  const std::size_t begin = profile.find("max_waypoints: ");
+  const std::size_t end = profile.find_first_of(" \n", profile.find(' ', begin) + 1);
+  profile.replace(begin, end - begin, "max_waypoints: 54");
+  std::ofstream(folder_.path() / "small.yaml") << profile;
+  const config::MissionSetup setup = read("small.yaml");
   const Written written = write(setup);
   ASSERT_TRUE(written.mission.flight) << written.mission.flight_failure;
   const flight::Route& route = written.mission.flight->mission.route;
@@ -285,7 +293,7 @@ TEST_P(InspectionFlightTest, ResumesALongFlightWhereItWasCut) {
 
 INSTANTIATE_TEST_SUITE_P(Vehicles, InspectionFlightTest,
                          testing::Values("mavic_3e", "generic", "generic_ardupilot"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& test) { return std::string(test.param); });
 
 TEST_F(InspectionFlightTest, StatesWhyThereAreNoRouteFiles) {
   // Returns at the minimum altitude of DJI's apps are above the limit.

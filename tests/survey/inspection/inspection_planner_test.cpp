@@ -240,8 +240,8 @@ TEST(PlanInspection, KeepsTheDeviationOfTheFlownCurveInAddition) {
 TEST(PlanInspection, SeesAllPointsByPixelsIfRequired) {
   InspectionOptions options = quick_options();
   options.goal.shares = {1.0, 0.0, 0.9};
-  options.camera.width = 64;  // large pixels, so that nearer points often hide others
-  options.camera.height = 48;
+  options.camera.width = 160;  // large pixels, so that nearer points often hide others
+  options.camera.height = 120;
   const InspectionPlan plan = plan_inspection(options, cube_site(), {});
   EXPECT_TRUE(!plan.meets_goal || plan.evaluation.seen[0] == plan.attainable[0]);
   EXPECT_GE(plan.evaluation.seen[0] + 3, plan.attainable[0]);
