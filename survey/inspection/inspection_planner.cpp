@@ -294,20 +294,22 @@ InspectionPlan plan_inspection(const InspectionOptions& options, const Inspectio
   check_stop();
   report("verifying the flight");
   InspectionPlan plan = verified_plan(options, site, cloud, results, threads);
-  // The search counts points by the rule "pixel" that a nearer one may hide in each of few views.
+  // The weights of the search leave out the last few points if they take long. By the rule "pixel"
+  // it also counts points that a nearer one hides in each of their few views.
   PerRule<std::size_t> missing = missing_points(plan.evaluation, options.goal, candidates);
   const auto sum = [](const PerRule<std::size_t>& counts) {
     return counts[0] + counts[1] + counts[2];
   };
   constexpr int max_repairs = 3;
-  for (int repair = 0; plan.meets_goal && sum(missing) > 0 && repair < max_repairs; ++repair) {
+  for (int repair = 0; sum(missing) > 0 && repair < max_repairs; ++repair) {
     report(joined_text("adding views of ", sum(missing), " points"));
-    require_more_views(plan.evaluation, missing, candidates, search);
-    constexpr std::size_t move_share = 10, min_moves = 500;
+    if (plan.meets_goal) require_more_views(plan.evaluation, missing, candidates, search);
+    constexpr std::size_t move_share = 15, min_moves = 500;
     search.moves = std::max(options.moves / move_share, min_moves);
     search.first_phase_targets = cloud.size();
     search.last_phase_share = 1.0;
     search.start_temperature = 0.1;
+    search.min_unseen_weight = 1.0;
     geometry::RandomNumbers own(run.seed, options.searches + 1 + static_cast<std::size_t>(repair));
     results.push_back(search_route(space, cells, candidates, plan.vertices, search, own, run.stop));
     check_stop();

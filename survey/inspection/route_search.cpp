@@ -579,7 +579,8 @@ class Annealing {
 
   double min_weight() const {
     constexpr double per_target = 300.0;
-    return std::min(max_weight, per_target / static_cast<double>(counts_->targets()));
+    return std::min(max_weight, std::max(options_.min_unseen_weight,
+                                         per_target / static_cast<double>(counts_->targets())));
   }
   void set_min_weights() { weights_.fill(min_weight()); }
   double unseen_cost() const {
