@@ -28,7 +28,19 @@ Waypoint stop(const CapturePoint& capture_point, double clearance) {
   waypoint.hold_after = capture_point.hold_after;
   waypoint.captures = capture_point.captures;
   waypoint.view_index = capture_point.view_index;
+  waypoint.leg_time = capture_point.leg_time;
+  if (capture_point.is_passed) {
+    waypoint.is_passed = true;
+    waypoint.hold = waypoint.hold_after = 0.0;
+  }
   return waypoint;
+}
+
+/// Makes a waypoint a stop at the end of a sortie.
+void rest_at(Waypoint& waypoint) {
+  if (!waypoint.is_passed) return;
+  waypoint.is_passed = false;
+  waypoint.hold = corner_hold;
 }
 
 }  // namespace
@@ -66,7 +78,11 @@ FlightPlan flight_plan(const Route& route, std::size_t index, const std::string&
   };
   const Leg* leg = &sortie.out;
   for (std::uint32_t i = sortie.first; i <= sortie.last; ++i) {
-    add(*leg, stop(route.capture_points[i], leg->clearance));
+    Waypoint end = stop(route.capture_points[i], leg->clearance);
+    if (i == sortie.first || i == sortie.last) rest_at(end);
+    // Paths around obstacles are flown with stops.
+    if (i == sortie.first || leg->points.size() > 2) end.leg_time = 0.0;
+    add(*leg, std::move(end));
     leg = i < sortie.last ? &route.legs[i] : &sortie.back;
   }
   add(sortie.back, corner(sortie.back.points.back(), sortie.back.clearance));
@@ -77,6 +93,36 @@ const Returns& FlightPlan::verified_returns() const {
   if (returns) return *returns;
   throw Error(ErrorKind::bad_config,
               "\"" + name + "\" has no verified return, but the file requires a return altitude");
+}
+
+double turn_distance(const FlightPlan& plan, std::size_t index) {
+  const Waypoint& waypoint = plan.waypoints[index];
+  if (!waypoint.is_passed) return 0.0;
+  const double before = (waypoint.position - plan.waypoints[index - 1].position).norm();
+  const double after = (plan.waypoints[index + 1].position - waypoint.position).norm();
+  if (plan.vehicle.autopilot == AutopilotType::ardupilot) return 0.5 * before;
+  // DJI: the damping distances of two waypoints must not exceed their leg.
+  constexpr double max_share = 0.4;
+  return std::min(acceptance_radius, max_share * std::min(before, after));
+}
+
+double leg_speed(const FlightPlan& plan, std::size_t index) {
+  const Waypoint& waypoint = plan.waypoints[index];
+  if (waypoint.leg_time <= 0.0) return plan.conditions.cruise_speed;
+  constexpr double step = 0.1, rounding = 1e-6;
+  const double length = (waypoint.position - plan.waypoints[index - 1].position).norm();
+  const double steps = std::ceil(length / waypoint.leg_time / step - rounding);
+  return std::min(plan.conditions.cruise_speed, step * std::max(1.0, steps));
+}
+
+Recording recorded_stretch(const FlightPlan& plan) {
+  Recording recording;
+  for (std::size_t i = 1; i + 1 < plan.waypoints.size(); ++i) {
+    if (!plan.waypoints[i].is_passed) continue;
+    if (recording.is_empty()) recording.first = i - 1;
+    recording.last = i + 1;
+  }
+  return recording;
 }
 
 std::vector<Eigen::Vector3d> rally_points(const FlightPlan& plan) {
@@ -124,9 +170,10 @@ std::vector<StopTime> stop_times(const FlightPlan& plan) {
       leg = duration(*path_curve) + plan.vehicle.mode.settle_time;
     } else {
       leg = waypoint.run ? run_time(plan, *waypoint.run, straight) : motion.leg_time(straight);
+      if (waypoint.leg_time > 0.0) leg = waypoint.leg_time;
     }
     double aimed = now + leg;
-    if (waypoint.is_capture_point && last_capture_point != nullptr) {
+    if (waypoint.is_capture_point && last_capture_point != nullptr && waypoint.leg_time == 0.0) {
       const double turn =
           std::remainder(waypoint.yaw - last_capture_point->yaw, 2.0 * std::numbers::pi);
       aimed = now + motion.aimed_time(leg, turn, waypoint.pitch - last_capture_point->pitch);

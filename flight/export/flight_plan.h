@@ -39,6 +39,9 @@ struct Waypoint {
   /// Fly-through alternative to `curve`, past the waypoints of a sortie.
   std::optional<FlyThrough> fly_through{};
   std::optional<PhotoRun> run{};  ///< photos taken on the straight leg that ends here
+  bool is_passed = false;         ///< The vehicle passes without a stop and cuts the corner.
+  /// Duration of the straight leg that ends here [s]. 0: that of a leg from rest to rest.
+  double leg_time = 0.0;
 
   /// Returns the curve of the leg that ends here, or null for a straight leg.
   const Curve* path_curve() const {
@@ -66,6 +69,26 @@ struct FlightPlan {
   /// Returns the verified returns. Throws Error{bad_config} without returns.
   const Returns& verified_returns() const;
 };
+
+/// Returns the maximum distance from waypoint `index` at which the vehicle leaves the leg before it
+/// if the waypoint is passed, otherwise 0 [m].
+///
+/// ArduPilot 4.1 and later blend two legs from the middle of the first one at the earliest
+/// (AP_Math/SCurve.cpp). PX4 turns within the acceptance radius of the item. DJI aircraft turn
+/// within the damping distance of the waypoint.
+double turn_distance(const FlightPlan& plan, std::size_t index);
+
+/// Returns the speed on the leg that ends at waypoint `index` [m/s]: that of its planned duration,
+/// rounded up to 0.1 m/s, or the cruise speed.
+double leg_speed(const FlightPlan& plan, std::size_t index);
+
+/// First and last waypoint of a continuous recording: the stops before and after all passed
+/// waypoints. Equal if no waypoint is passed.
+struct Recording {
+  std::size_t first = 0, last = 0;
+  bool is_empty() const { return first == last; }
+};
+Recording recorded_stretch(const FlightPlan& plan);
 
 /// Returns the rally points that the plan's vehicle may use for a return.
 std::vector<Eigen::Vector3d> rally_points(const FlightPlan& plan);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "geometry/angle.h"
 #include "geometry/error.h"
@@ -29,16 +30,23 @@ class ItemWriter {
   explicit ItemWriter(const FlightPlan& plan)
       : plan_(plan),
         times_(stop_times(plan)),
+        recording_(recorded_stretch(plan)),
         local_(plan.site.origin),
-        pad_(local_.to_geodetic(plan.pad)) {}
+        pad_(local_.to_geodetic(plan.pad)),
+        speed_(plan.conditions.cruise_speed) {}
 
   std::vector<MissionItem> write() {
     const Waypoint& above_pad = plan_.waypoints.front();
     add_position(command::takeoff, {0, 0, 0, unspecified}, above_pad.position);
     add_speeds();
     for (std::size_t i = 1; i < plan_.waypoints.size(); ++i) {
+      set_speed(leg_speed(plan_, i));
       plan_.waypoints[i].is_capture_point ? add_capture_point(i) : add_stop(i, unspecified);
+      if (recording_.is_empty()) continue;
+      if (i == recording_.first) add(command::start_video, {0, 0, 0, 0, 0, 0, 0});
+      if (i == recording_.last) add(command::stop_video, {0, 0, 0, 0, 0, 0, 0});
     }
+    set_speed(plan_.conditions.cruise_speed);
     add_position(command::land, {0, 0, 0, unspecified}, plan_.pad);
     for (std::size_t i = 0; i < items_.size(); ++i) items_[i].number = i + 1;
     return std::move(items_);
@@ -71,6 +79,23 @@ class ItemWriter {
     add(command::change_speed, {3, plan_.vehicle.mode.max_descent, -1, 0, 0, 0, 0});
   }
 
+  void set_speed(double speed) {
+    if (speed == speed_) return;
+    speed_ = speed;
+    add(command::change_speed, {1, speed, -1, 0, 0, 0, 0});
+  }
+
+  /// Returns the rate of yaw that turns the vehicle evenly during the leg to a waypoint, or 0: the
+  /// autopilot's own rate [degrees/s].
+  double even_yaw_rate(std::size_t i) const {
+    const Waypoint& to = plan_.waypoints[i];
+    const Waypoint& from = plan_.waypoints[i - 1];
+    if (to.leg_time <= 0.0 || !from.is_capture_point) return 0.0;
+    constexpr double min_rate = 1.0;  // Whole degrees per second; 0 is the autopilot's own.
+    const double turn = std::remainder(to.yaw - from.yaw, 2.0 * std::numbers::pi);
+    return std::max(min_rate, std::ceil(degrees_per_radian * std::abs(turn) / to.leg_time));
+  }
+
   void add_delay(double seconds) {
     if (seconds > 0.0) add(command::delay, {seconds, -1, -1, -1, 0, 0, 0});
   }
@@ -79,7 +104,10 @@ class ItemWriter {
   /// to whole seconds but not a delay, which also turns the previous waypoint into a stop.
   void add_stop(std::size_t i, double yaw_deg) {
     const double wait = std::round((times_[i].capture - times_[i].arrival) * 1e3) / 1e3;
-    add_position(command::waypoint, {is_ardupilot() ? 0.0 : wait, acceptance_radius, 0, yaw_deg},
+    const bool is_passed = plan_.waypoints[i].is_passed && !is_ardupilot();
+    const double radius =
+        is_passed ? std::ceil(turn_distance(plan_, i) * 1e3) / 1e3 : acceptance_radius;
+    add_position(command::waypoint, {is_ardupilot() ? 0.0 : wait, radius, 0, yaw_deg},
                  plan_.waypoints[i].position);
     if (is_ardupilot()) add_delay(wait);
   }
@@ -98,7 +126,7 @@ class ItemWriter {
     const double pitch_deg = std::round(capture_point.pitch * degrees_per_radian * 1e4) / 1e4;
     if (capture_point.run) add_trigger(capture_point.run->spacing, capture_point.run->speed);
     add(command::mount_control, {pitch_deg, 0, 0, 0, 0, 0, 2});  // 2: aim by these angles.
-    if (is_ardupilot()) add(command::condition_yaw, {yaw_deg, 0, 0, 0, 0, 0, 0});
+    if (is_ardupilot()) add(command::condition_yaw, {yaw_deg, even_yaw_rate(i), 0, 0, 0, 0, 0});
     add_stop(i, is_ardupilot() ? unspecified : yaw_deg);
     if (capture_point.run) add_trigger(0.0, plan_.conditions.cruise_speed);
     for (int capture = 0; capture < capture_point.captures; ++capture) add_shot();
@@ -123,8 +151,10 @@ class ItemWriter {
 
   const FlightPlan& plan_;
   std::vector<StopTime> times_;
+  Recording recording_;
   LocalFrame local_;
   GeodeticPoint pad_;
+  double speed_;  ///< That the items so far set [m/s].
   int captures_ = 0;
   std::vector<MissionItem> items_;
 };

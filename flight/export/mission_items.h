@@ -18,7 +18,8 @@ namespace command {
 inline constexpr int waypoint = 16, loiter_time = 19, return_to_launch = 20, land = 21,
                      takeoff = 22, delay = 93, condition_yaw = 115, jump = 177, change_speed = 178,
                      digicam_control = 203, mount_control = 205, camera_trigger_distance = 206,
-                     gimbal_pitch_yaw = 1000, start_capture = 2000;
+                     gimbal_pitch_yaw = 1000, start_capture = 2000, start_video = 2500,
+                     stop_video = 2501;
 }
 
 /// MAV_FRAME numbers in use.

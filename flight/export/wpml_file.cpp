@@ -149,8 +149,8 @@ class WpmlChecker {
     } else {
       point.height = require_number(mark, "executeHeight", -500, 10000);
       require_number(mark, "waypointSpeed", 0.01, 15);
-      check_turn(mark);
     }
+    if (!is_template_ || mark.child("wpml:waypointTurnParam")) check_turn(mark, point);
     if (is_template_ && child_text(mark, "useGlobalSpeed") == "0") {
       require_number(mark, "waypointSpeed", 0.01, 15);
     }
@@ -165,13 +165,16 @@ class WpmlChecker {
     route.points.push_back(point);
   }
 
-  void check_turn(pugi::xml_node mark) {
+  void check_turn(pugi::xml_node mark, FilePoint& point) {
     const pugi::xml_node turn = mark.child("wpml:waypointTurnParam");
     require_one_of(turn, "waypointTurnMode",
                    {wpml::stop_turn, "coordinateTurn", "toPointAndStopWithContinuityCurvature",
                     "toPointAndPassWithContinuityCurvature"});
-    require_number(turn, "waypointTurnDampingDist", 0, 10000);
-    if (child_text(turn, "waypointTurnMode") != wpml::stop_turn) {
+    const double damping = require_number(turn, "waypointTurnDampingDist", 0, 10000);
+    const std::string mode = child_text(turn, "waypointTurnMode");
+    if (mode == wpml::passing_turn && damping > 0.0) {
+      point.curve = damping;
+    } else if (mode != wpml::stop_turn) {
       add_problem(
           "has a turn mode that leaves the straight legs; its clearance cannot be verified");
     }
@@ -223,6 +226,15 @@ class WpmlChecker {
         require_number(param, "payloadPositionIndex", 0, 2);
         require_one_of(param, "recordPointCloudOperate",
                        {"startRecord", "pauseRecord", "resumeRecord", "stopRecord"});
+      } else if (function == "gimbalEvenlyRotate") {
+        require_number(param, "gimbalPitchRotateAngle", -120, 60);
+        require_number(param, "payloadPositionIndex", 0, 2);
+        if (trigger != "betweenAdjacentPoints") {
+          add_problem("has a gimbalEvenlyRotate without the trigger betweenAdjacentPoints");
+        }
+      } else if (function == "startRecord" || function == "stopRecord") {
+        require_number(param, "payloadPositionIndex", 0, 2);
+        check_lens(param);
       } else if (function != "rotateYaw") {
         add_problem("has wpml:actionActuatorFunc \"" + function + "\", which is not supported");
       }
@@ -285,7 +297,7 @@ bool agree(const WpmlChecker& edited, const WpmlChecker& executed) {
     if (std::abs(a.latitude_deg - b.latitude_deg) > same_degrees ||
         std::abs(a.longitude_deg - b.longitude_deg) > same_degrees ||
         std::abs(height - b.height) > same_height || (a.datum != b.datum && !are_both) ||
-        a.captures != b.captures || a.photo_spacing != b.photo_spacing) {
+        a.captures != b.captures || a.photo_spacing != b.photo_spacing || a.curve != b.curve) {
       return false;
     }
   }

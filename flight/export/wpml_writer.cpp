@@ -67,6 +67,7 @@ class WpmlWriter {
       max_height_ = std::max(max_height_, height(waypoint));
     is_commanded_ = !commanded_scanner(plan.vehicle.wpml.payload).empty();
     recorded_ = recorded_waypoints(plan);
+    filmed_ = recorded_stretch(plan);
   }
 
   std::string write() {
@@ -176,22 +177,25 @@ class WpmlWriter {
       add(mark, "useGlobalHeight", "0");
       add(mark, "ellipsoidHeight", fixed(height(waypoint), 3));
       add(mark, "height", fixed(height(waypoint), 3));
-      add(mark, "useGlobalSpeed", run_from(index) == nullptr ? "1" : "0");
-      if (run_from(index) != nullptr) add(mark, "waypointSpeed", speed_from(index));
+      const bool has_own_speed = run_from(index) != nullptr || is_timed_from(index);
+      add(mark, "useGlobalSpeed", has_own_speed ? "0" : "1");
+      if (has_own_speed) add(mark, "waypointSpeed", speed_from(index));
       add(mark, "useGlobalHeadingParam", "0");
-      add(mark, "useGlobalTurnParam", "1");
+      add(mark, "useGlobalTurnParam", waypoint.is_passed ? "0" : "1");
     } else {
       add(mark, "executeHeight", fixed(height(waypoint), 3));
       add(mark, "waypointSpeed", speed_from(index));
     }
     add_heading(mark, index);
-    if (!is_template_) {
+    if (!is_template_ || waypoint.is_passed) {
       pugi::xml_node turn = add(mark, "waypointTurnParam");
-      add(turn, "waypointTurnMode", wpml::stop_turn);
-      add(turn, "waypointTurnDampingDist", "0");
+      add(turn, "waypointTurnMode", waypoint.is_passed ? wpml::passing_turn : wpml::stop_turn);
+      add(turn, "waypointTurnDampingDist",
+          waypoint.is_passed ? fixed(turn_distance(plan_, index), 3) : "0");
     }
     add(mark, "useStraightLine", "1");
-    add_actions(mark, index);
+    if (!waypoint.is_passed) add_actions(mark, index);
+    if (is_timed_from(index)) add_even_pitch(mark, index);
     if (const PhotoRun* run = run_from(index)) add_run(mark, index, *run);
   }
 
@@ -201,8 +205,14 @@ class WpmlWriter {
     return &*plan_.waypoints[index + 1].run;
   }
 
+  /// Returns true if the leg that begins at a waypoint has a planned duration.
+  bool is_timed_from(std::size_t index) const {
+    return index + 1 < plan_.waypoints.size() && plan_.waypoints[index + 1].leg_time > 0.0;
+  }
+
   /// Of the leg that begins at a waypoint.
   std::string speed_from(std::size_t index) const {
+    if (is_timed_from(index)) return fixed(std::min(leg_speed(plan_, index + 1), 15.0), 2);
     const PhotoRun* run = run_from(index);
     return run == nullptr ? speed() : fixed(std::min(run->speed, 15.0), 2);
   }
@@ -265,6 +275,29 @@ class WpmlWriter {
       }
     }
     if (waypoint.hold_after > 0.0) add(action("hover"), "hoverTime", fixed(waypoint.hold_after, 2));
+    if (filmed_.is_empty()) return;
+    if (index == filmed_.first) {
+      pugi::xml_node record = action("startRecord");
+      add_photo(record, "inspection");
+    }
+    if (index == filmed_.last) {
+      pugi::xml_node record = action("stopRecord");
+      add(record, "payloadPositionIndex", "0");
+      add_lens(record);
+    }
+  }
+
+  /// The gimbal pitches evenly along the leg that begins at a waypoint.
+  void add_even_pitch(pugi::xml_node mark, std::size_t index) {
+    pugi::xml_node group = add_group(mark, std::to_string(index), std::to_string(index + 1));
+    add(add(group, "actionTrigger"), "actionTriggerType", "betweenAdjacentPoints");
+    pugi::xml_node action = add(group, "action");
+    add(action, "actionId", "0");
+    add(action, "actionActuatorFunc", "gimbalEvenlyRotate");
+    pugi::xml_node gimbal = add(action, "actionActuatorFuncParam");
+    add(gimbal, "gimbalPitchRotateAngle",
+        fixed(plan_.waypoints[index + 1].pitch * degrees_per_radian, 4));
+    add(gimbal, "payloadPositionIndex", "0");
   }
 
   pugi::xml_node add_group(pugi::xml_node mark, const std::string& first, const std::string& last) {
@@ -364,6 +397,7 @@ class WpmlWriter {
   std::size_t groups_ = 0;     ///< that are written
   bool is_commanded_ = false;  ///< whether it carries a scanner that files command
   RecordedWaypoints recorded_;
+  Recording filmed_;
 };
 
 }  // namespace

@@ -12,6 +12,8 @@ namespace wpml {
 inline constexpr const char* wpml_namespace = "http://www.dji.com/wpmz/";
 /// Turn mode with straight legs and a stop at each end.
 inline constexpr const char* stop_turn = "toPointAndStopWithDiscontinuityCurvature";
+/// The aircraft turns within the damping distance and does not pass the waypoint itself.
+inline constexpr const char* passing_turn = "coordinateTurn";
 }  // namespace wpml
 
 std::string template_kml(const FlightPlan& plan);

@@ -8,7 +8,7 @@ namespace {
 
 constexpr SupportedBy both = SupportedBy::both, ardupilot = SupportedBy::ardupilot;
 
-constexpr std::array<CommandRow, 36> table{{
+constexpr std::array<CommandRow, 38> table{{
     {16, "NAV_WAYPOINT", Meaning::fly_to, both, ""},
     {17, "NAV_LOITER_UNLIM", Meaning::rejected, both,
      "it loiters indefinitely, so no later item is flown"},
@@ -53,6 +53,8 @@ constexpr std::array<CommandRow, 36> table{{
     {1000, "DO_GIMBAL_MANAGER_PITCHYAW", Meaning::aim_by_gimbal, both, ""},
     {2000, "IMAGE_START_CAPTURE", Meaning::take_photo, both, ""},
     {2001, "IMAGE_STOP_CAPTURE", Meaning::no_motion, both, ""},
+    {2500, "VIDEO_START_CAPTURE", Meaning::no_motion, both, ""},
+    {2501, "VIDEO_STOP_CAPTURE", Meaning::no_motion, both, ""},
     {42700, "DO_SEND_SCRIPT_MESSAGE", Meaning::rejected, both, "the effect of a script is unknown"},
 }};
 static_assert(std::ranges::is_sorted(table, {}, &CommandRow::id));

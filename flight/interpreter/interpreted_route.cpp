@@ -45,10 +45,12 @@ RouteVerification verify(const InterpretedRoute& route, const FreeSpace& space,
   RouteVerification result{{}, up_to};
   for (const InterpretedSegment& segment : route.segments) {
     const FreeSpace& where = segment.is_over_pad ? pad_space : space;
-    const LegVerification verification =
+    const double required = clearance + segment.margin, most = up_to + segment.margin;
+    LegVerification verification =
         segment.start.length() > 0.0
-            ? verify_fan(where, segment.start, segment.to, clearance, up_to)
-            : verify(where, {segment.start.to, segment.to}, clearance, up_to);
+            ? verify_fan(where, segment.start, segment.to, required, most)
+            : verify(where, {segment.start.to, segment.to}, required, most);
+    verification.clearance -= segment.margin;
     if (!verification.is_verified)
       result.problems.push_back(describe(segment, verification, where));
     const double known =
@@ -56,6 +58,15 @@ RouteVerification verify(const InterpretedRoute& route, const FreeSpace& space,
     result.clearance = std::min(result.clearance, known);
   }
   return result;
+}
+
+Departure departure_after(const InterpretedSegment& leg, double distance) {
+  const Eigen::Vector3d along = leg.to - leg.start.to;
+  const double length = along.norm();
+  if (length == 0.0) return {{leg.to, leg.to}};
+  const double share = std::min(1.0, distance / length);
+  const double beside = leg.margin + (leg.start.from - leg.start.to).cross(along).norm() / length;
+  return {{leg.to - share * along, leg.to}, share * beside};
 }
 
 void append_passes(InterpretedRoute& route, double spacing, double yaw_deg, double pitch_deg) {

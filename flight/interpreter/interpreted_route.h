@@ -26,6 +26,7 @@ struct InterpretedSegment {
   bool is_over_pad = false;    ///< True for climb and landing, where the ground is not an obstacle.
   double hold = 0.0;           ///< Wait at the end, as specified in the file [s].
   double speed = unspecified;  ///< Ground speed, if specified in the file [m/s].
+  double margin = 0.0;         ///< Maximum distance of the actual start from `start` [m].
 };
 
 /// Position at which photos are taken.
@@ -67,6 +68,18 @@ struct RouteVerification {
 /// pad are verified in `pad_space`, which should not contain the ground there.
 RouteVerification verify(const InterpretedRoute& route, const FreeSpace& space,
                          const FreeSpace& pad_space, double clearance, double up_to);
+
+/// Possible start positions of a leg after a waypoint that is passed: within `margin` [m] of
+/// `start`.
+struct Departure {
+  Segment start;
+  double margin = 0.0;
+};
+
+/// Returns the departure from the end of `leg`, which the vehicle passes after it leaves the leg at
+/// most `distance` [m] before. Where the leg itself starts beside its line, so does the departure,
+/// but nearer to the line by the ratio of `distance` to its length.
+Departure departure_after(const InterpretedSegment& leg, double distance);
 
 /// Adds the photos of a distance trigger on the last straight leg of the route. One photo is at
 /// each multiple of `spacing` [m] (positive) from the leg's start. Photos within half of that

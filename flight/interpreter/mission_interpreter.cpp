@@ -198,40 +198,36 @@ class MissionFlight {
       add_problem(item, "climbs to a height that is not above the take-off point");
     append_column(route_, {pad_, position_}, {"the take-off point", item_label(item)},
                   facts_.takeoff_climb);
-    arrive(item, {position_, position_}, true);
+    arrive(item, {{position_, position_}}, true);
   }
 
   void fly_to(const MissionItem& item) {
     check_default_speed(item);
     const Vector3d target = position_from_item(item);
-    const bool is_early = departure_.length() > 0.0;
     fly_straight(target, item);
-    const Vector3d from = position_;
+    const double distance = (target - position_).norm();
     position_ = target;
     hold_ = route_.segments.back().hold = item.params[0];
     const bool stops = hold_ > 0.0 || stops_for_the_next();
     const double radius = compute_radius(item);
-    const double distance = (target - from).norm();
-    Segment departure{target, target};
-    if (!stops) {
-      departure.from = from;  // Corners are cut anywhere within the triangle of both legs.
-    } else if (radius > acceptance_radius && distance > 0.0) {
-      departure.from = target + std::min(1.0, radius / distance) * (from - target);
-    }
-    if (is_early && departure.length() > 0.0) {
-      add_problem(
-          item,
-          "is passed without a stop directly after another such waypoint; the resulting curve "
-          "cannot be verified");
+    Departure departure{{target, target}};
+    if (!stops && autopilot_ == AutopilotType::ardupilot) {
+      // Blends two legs from the middle of the first one at the earliest, when the blend before is
+      // complete (AP_Math/SCurve.cpp).
+      departure = departure_after(route_.segments.back(), 0.5 * distance);
+      departure.margin = 0.0;
+    } else if (!stops || radius > acceptance_radius) {
+      departure = departure_after(route_.segments.back(), radius);
     }
     arrive(item, departure, stops && radius <= acceptance_radius);
   }
 
   void fly_straight(const Vector3d& to, const MissionItem& item) {
-    route_.segments.push_back({departure_, to, item_label(*last_), item_label(item)});
+    route_.segments.push_back({departure_.start, to, item_label(*last_), item_label(item)});
     route_.segments.back().speed = speed_;
+    route_.segments.back().margin = departure_.margin;
     if (photo_spacing_ == 0.0) return;
-    if (departure_.length() > 0.0) {
+    if (departure_.start.length() > 0.0) {
       return add_problem(
           item,
           "is reached with the camera trigger active, but the exact start of the leg is unknown");
@@ -262,7 +258,7 @@ class MissionFlight {
     return false;
   }
 
-  void arrive(const MissionItem& item, const Segment& departure, bool is_exact) {
+  void arrive(const MissionItem& item, const Departure& departure, bool is_exact) {
     last_ = &item;
     departure_ = departure;
     is_exact_ = is_exact;
@@ -295,7 +291,7 @@ class MissionFlight {
           item, "waits for " + fixed(seconds, 1) +
                     " s; it must be above 0 and at most 600 (other values set a time of day)");
     }
-    if (departure_.length() == 0.0) hold_ += seconds;
+    if (departure_.start.length() == 0.0) hold_ += seconds;
     if (shoots_) route_.stops.back().hold_after += seconds;
     route_.segments.back().hold += seconds;
   }
@@ -393,7 +389,7 @@ class MissionFlight {
   Vector3d pad_ = Vector3d::Zero();
   Vector3d position_ = Vector3d::Zero();
   /// Possible start positions of the next leg.
-  Segment departure_{Vector3d::Zero(), Vector3d::Zero()};
+  Departure departure_{{Vector3d::Zero(), Vector3d::Zero()}};
   double hold_ = 0.0;
   double photo_spacing_ = 0.0;  ///< of the camera's trigger; zero: none
   double speed_ = unspecified;

@@ -44,8 +44,10 @@ constexpr std::array template_rules{
 
 constexpr std::array template_waypoint_rules{
     OnlyValue{"useGlobalHeight", "0", "overrides the height of the mission"},
-    OnlyValue{"useGlobalTurnParam", "1", "overrides the turn mode of the mission"},
     OnlyValue{"useStraightLine", "1", "leaves the straight legs"}};
+
+constexpr std::array template_stop_rules{
+    OnlyValue{"useGlobalTurnParam", "1", "overrides the turn mode of the mission"}};
 
 constexpr std::array wayline_waypoint_rules{
     OnlyValue{"useStraightLine", "1", "leaves the straight legs"}};
@@ -138,7 +140,9 @@ class WpmlFlight {
   }
 
   /// Interprets the file. `positions` are the waypoints in the local frame [m].
-  InterpretedRoute fly(const std::vector<Vector3d>& positions, const Vector3d& pad) {
+  /// `curves` are the distances from them at which the aircraft may turn [m].
+  InterpretedRoute fly(const std::vector<Vector3d>& positions, const std::vector<double>& curves,
+                       const Vector3d& pad) {
     check_known(config_, config_elements, "");
     check_known(folder_, folder_elements, "");
     check_mission(positions, pad);
@@ -147,17 +151,21 @@ class WpmlFlight {
     double speed = unspecified;
     for (const pugi::xml_node mark : folder_.children("Placemark")) {
       if (index > 0) {
-        route_.segments.push_back({{positions[index - 1], positions[index - 1]},
-                                   positions[index],
-                                   waypoint(index - 1),
-                                   waypoint(index)});
+        const Departure departure = index > 1
+                                        ? departure_after(route_.segments.back(), curves[index - 1])
+                                        : Departure{{positions[0], positions[0]}};
+        route_.segments.push_back(
+            {departure.start, positions[index], waypoint(index - 1), waypoint(index)});
         route_.segments.back().speed = speed;
+        route_.segments.back().margin = departure.margin;
+        check_turns(positions, curves, index);
         if (photo_spacing_ > 0.0) append_passes(route_, photo_spacing_, yaw_deg_, pitch_deg_);
         legs_.push_back({positions[index - 1], positions[index], waypoint(index - 1),
                          waypoint(index), speed, is_recording_, heading_deg_, read_heading(mark),
                          pitch_deg_});
       }
       speed = read_speed(mark);
+      is_passed_ = curves[index] > 0.0;
       check_waypoint(mark, index);
       heading_deg_ = read_heading(mark);
       act(mark, positions[index], index);
@@ -312,6 +320,7 @@ class WpmlFlight {
     check_speed(mark, "waypointSpeed", who);
     if (is_template()) {
       check_values(mark, template_waypoint_rules, who);
+      if (!is_passed_) check_values(mark, template_stop_rules, who);
     } else {
       check_values(mark, wayline_waypoint_rules, who);
     }
@@ -353,6 +362,12 @@ class WpmlFlight {
         }
         if (function == "rotateYaw") yaw_deg = child_number(param, "aircraftHeading");
         if (function == "gimbalRotate") aim(param, who);
+        if (function == "gimbalEvenlyRotate") {
+          pitch_deg_ = child_number(param, "gimbalPitchRotateAngle");
+        }
+        if (is_passed_ && child_text(trigger, "actionTriggerType") == "reachPoint") {
+          add_problem("has actions although it is passed without a stop", who);
+        }
         if (function == "recordPointCloud") {
           const std::string operation = child_text(param, "recordPointCloudOperate");
           is_recording_ = operation == "startRecord" || operation == "resumeRecord";
@@ -380,6 +395,22 @@ class WpmlFlight {
     return heading;
   }
 
+  /// Turns must not overlap, and the aircraft must stop at both ends of the wayline.
+  void check_turns(const std::vector<Vector3d>& positions, const std::vector<double>& curves,
+                   std::size_t index) {
+    const double length = (positions[index] - positions[index - 1]).norm();
+    if (curves[index - 1] + curves[index] > length) {
+      add_problem(
+          "has a wpml:waypointTurnDampingDist that overlaps with that of the waypoint before",
+          waypoint(index));
+    }
+    const bool is_last = index + 1 == positions.size();
+    if ((index == 1 && curves[0] > 0.0) || (is_last && curves[index] > 0.0)) {
+      add_problem("has a turn at an end of the wayline, where the aircraft must stop",
+                  waypoint(is_last && curves[index] > 0.0 ? index : 0));
+    }
+  }
+
   bool is_photo_run(const std::string& trigger) const {
     return facts_.photo && trigger == "multipleDistance";
   }
@@ -393,7 +424,7 @@ class WpmlFlight {
   void check_group(pugi::xml_node group, std::size_t index) {
     check_values(group, group_rules, waypoint(index));
     const std::string trigger = child_text(group.child("wpml:actionTrigger"), "actionTriggerType");
-    const bool is_run = is_photo_run(trigger);
+    const bool is_run = is_photo_run(trigger) || trigger == "betweenAdjacentPoints";
     if (!is_run && trigger != "reachPoint") {
       add_problem("has wpml:actionTriggerType " + trigger + "; it must be reachPoint" +
                       (facts_.photo ? " or multipleDistance" : ""),
@@ -420,6 +451,7 @@ class WpmlFlight {
   double photo_spacing_ = 0.0;        ///< on the leg from there; zero: no photos [m]
   double heading_deg_ = unspecified;  ///< at the waypoint before
   bool is_recording_ = false;         ///< a point cloud
+  bool is_passed_ = false;            ///< the waypoint, without a stop
   std::vector<ScannedLeg> legs_;
 };
 
@@ -444,10 +476,12 @@ InterpretedRoute interpret(const KmzContent& kmz, const FlightFacts& facts) {
   const std::vector<Vector3d> positions = local_points(file, facts.site, facts.pad);
   Vector3d pad = facts.pad;
   if (!facts.is_pad_known) pad.head<2>() = stated.value_or(positions.front()).head<2>();
-  InterpretedRoute route = executed.fly(positions, pad);
+  std::vector<double> curves;
+  for (const FilePoint& point : file.points) curves.push_back(point.curve);
+  InterpretedRoute route = executed.fly(positions, curves, pad);
   if (stated) check_pad(*stated, pad, route.problems);
   if (!is_editable) return route;
-  for (const std::string& problem : edited.fly(positions, pad).problems) {
+  for (const std::string& problem : edited.fly(positions, curves, pad).problems) {
     if (std::ranges::find(route.problems, problem) == route.problems.end()) {
       route.problems.push_back(problem);
     }

@@ -13,14 +13,14 @@ using Eigen::Vector3d;
 namespace {
 
 /// Maximum number of mission items per waypoint, and per sortie.
-constexpr int items_per_capture_point = 8;
+constexpr int items_per_capture_point = 8, items_per_passed_point = 4;
 constexpr int items_per_sortie = 14;
 
 }  // namespace
 
-std::size_t max_capture_points(const Vehicle& vehicle) {
-  return static_cast<std::size_t>(
-      std::max(1, (vehicle.max_waypoints - items_per_sortie) / items_per_capture_point));
+std::size_t max_capture_points(const Vehicle& vehicle, bool are_passed) {
+  const int items = are_passed ? items_per_passed_point : items_per_capture_point;
+  return static_cast<std::size_t>(std::max(1, (vehicle.max_waypoints - items_per_sortie) / items));
 }
 
 LegCost compute_cost(const Leg& leg) { return {leg.duration, leg.energy, leg.emergency}; }
@@ -40,10 +40,16 @@ Leg LegCosts::leg(VerifiedPath path, const CapturePoint* from, const CapturePoin
     // Autopilots start to rotate when they depart for the waypoint, which is at the last corner.
     const bool is_last = i + 1 == points.size();
     const Vector3d displacement = points[i] - points[i - 1];
-    const double leg_time = motion_.leg_time(displacement);
-    const double moving = is_last ? aimed_time(leg_time, from, to) : leg_time;
-    leg.duration += moving;
-    leg.energy += motion_.leg_energy(displacement, moving);
+    if (to != nullptr && to->leg_time > 0.0 && points.size() == 2) {
+      leg.duration = to->leg_time;
+      leg.energy = to->leg_time * std::max(motion_.hover_power(),
+                                           motion_.flight_power(displacement / to->leg_time));
+    } else {
+      const double leg_time = motion_.leg_time(displacement);
+      const double moving = is_last ? aimed_time(leg_time, from, to) : leg_time;
+      leg.duration += moving;
+      leg.energy += motion_.leg_energy(displacement, moving);
+    }
     // Between two points, a return costs no more than the more expensive of both. The cost of level
     // flight grows with a distance, which is convex; climb and descent are linear.
     const double home = std::max(return_cost(points[i - 1]), return_cost(points[i]));
@@ -73,7 +79,9 @@ LegCost LegCosts::landing_cost(double climb) const {
 }
 
 LegCost LegCosts::capture_cost(const CapturePoint& capture_point) const {
-  const double hold = std::max(corner_hold, capture_point.hold) + capture_point.hold_after;
+  const double hold = capture_point.is_passed
+                          ? 0.0
+                          : std::max(corner_hold, capture_point.hold) + capture_point.hold_after;
   const double energy = motion_.hover_energy(hold);
   return {hold, energy, energy + return_cost(capture_point.view.position)};
 }

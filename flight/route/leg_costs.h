@@ -20,7 +20,8 @@ LegCost compute_cost(const Leg& leg);
 LegCost in_turn(const LegCost& first, const LegCost& second);
 
 /// Returns the maximum number of waypoints per sortie, from the vehicle's limit on mission items.
-std::size_t max_capture_points(const Vehicle& vehicle);
+/// Waypoints that are passed without a stop need fewer items.
+std::size_t max_capture_points(const Vehicle& vehicle, bool are_passed = false);
 
 /// Cost model of legs and stops. Keeps references to the constructor arguments.
 class LegCosts {

@@ -90,21 +90,35 @@ class RoutePlanner {
     SplitProblem problem;
     SplitProblem::Pad& pad = problem.pads.emplace_back();
     for (std::size_t i = 0; i < route_.capture_points.size(); ++i) {
-      pad.out.push_back(legs_.out_cost(i));
+      pad.out.push_back(out_cost(i));
       pad.back.push_back(legs_.back_cost(i));
       problem.capture_point.push_back(legs_.capture_cost(i));
       if (i > 0) problem.leg.push_back(compute_cost(route_.legs[i - 1]));
     }
     problem.energy_per_sortie = plannable_energy(legs_.motion());
-    problem.capture_points_per_sortie = max_capture_points(legs_.motion().vehicle());
+    const bool are_passed = std::ranges::any_of(route_.capture_points, &CapturePoint::is_passed);
+    std::size_t& most = problem.capture_points_per_sortie;
+    most = max_capture_points(legs_.motion().vehicle(), are_passed);
+    if (are_passed && most > 1) --most;  // A sortie that resumes has one in addition.
 
     const SortieSplit split = split_into_sorties(problem);
     route_.duration = split.time;
     route_.duration_bound = split.time_bound;
     route_.sorties.clear();
-    for (const SortieRange& range : split.sorties) {
+    for (SortieRange range : split.sorties) {
+      if (resumes_before(range.first)) --range.first;
       add_sortie(range, problem, legs_.out(range.first), legs_.back(range.last));
     }
+  }
+
+  /// Returns true if a sortie that begins with this capture point flies the leg before it, too.
+  bool resumes_before(std::size_t capture_point) const {
+    return capture_point > 0 && route_.capture_points[capture_point].leg_time > 0.0;
+  }
+
+  LegCost out_cost(std::size_t capture_point) const {
+    if (!resumes_before(capture_point)) return legs_.out_cost(capture_point);
+    return in_turn(legs_.out_cost(capture_point - 1), compute_cost(route_.legs[capture_point - 1]));
   }
 
   /// Returns true if the path of a sortie was changed.
@@ -121,7 +135,7 @@ class RoutePlanner {
   void add_sortie(const SortieRange& range, const SplitProblem& problem, const Leg& out,
                   const Leg& back) {
     Sortie sortie{range.first, range.last, out, back};
-    LegCost total = in_turn(problem.pads[0].out[range.first], problem.pads[0].back[range.last]);
+    LegCost total = in_turn(legs_.out_cost(range.first), problem.pads[0].back[range.last]);
     double length = out.length + back.length + 2.0 * route_.options.takeoff_climb;
     double clearance = std::min(out.clearance, back.clearance);
     for (std::uint32_t i = range.first; i <= range.last; ++i) {

@@ -34,6 +34,12 @@ struct CapturePoint {
   /// Path that the survey flew to this waypoint from the previous one, or from above the pad. Empty
   /// if it was not flown.
   std::vector<Eigen::Vector3d> approach_path{};
+  /// The vehicle passes without a stop, except at the ends of sorties. Such a route is continuous:
+  /// a sortie resumes at the last capture point of the previous one.
+  bool is_passed = false;
+  /// Planned duration of the straight leg from the previous capture point [s]. 0: that of a leg
+  /// from rest to rest.
+  double leg_time = 0.0;
 };
 
 /// Returns the viewing direction of an aim (unit vector).

@@ -235,16 +235,17 @@ int plan_inspection(const PlanOptions& options, const config::MissionSetup& setu
   const auto report = [&](const std::string& what) { progress.show(setup.name + ": " + what); };
   report("reading the structure");
   const inspection::InspectionSpace space(setup);
-  const inspection::InspectionMission mission =
+  inspection::InspectionMission mission =
       inspection::plan_inspection_mission(setup, space, console.stop, report);
   report("writing " + folder.path().string());
-  inspection::stage_inspection_mission(setup, mission, folder);
+  inspection::stage_inspection_mission(setup, space, mission, folder);
+  write_page(package::summary_name, options.has_report, folder, console);
   folder.commit();
   progress.clear();
   if (options.is_quiet) return 0;
   console.out << inspection::plan_text(setup, mission) << "  results   " << folder.path().string()
               << "\n"
-              << inspection::warnings_text(mission) << std::flush;
+              << inspection::warnings_text(setup, mission) << std::flush;
   return 0;
 }
 

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "geometry/error.h"
 #include "missions/config/inspection_rules.h"
 #include "missions/config/mission_document.h"
 
@@ -14,14 +15,30 @@ using survey::inspection::incidence_rule;
 using survey::inspection::InspectionOptions;
 using survey::inspection::InspectionPlan;
 
+/// Plans the flight with waypoints, and states why if there is none.
+void plan_flight(const config::MissionSetup& setup, const InspectionSpace& space,
+                 const std::stop_token& stop, InspectionMission& mission) {
+  try {
+    mission.flight = plan_inspection_flight(setup, space, mission.options, mission.plan, stop);
+    if (mission.flight->deviation_bound > mission.options.flown_deviation) {
+      mission.flight_failure = fmt::format(
+          "the autopilot's curve could deviate by {:.2f} m from the planned one, and at most "
+          "{:.2f} m are allowed",
+          mission.flight->deviation_bound, mission.options.flown_deviation);
+      mission.flight.reset();
+    }
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::bad_config && error.kind() != ErrorKind::bad_geometry) throw;
+    mission.flight_failure = error.what();
+  }
+}
+
 std::vector<std::string> make_warnings(const config::MissionSetup& setup,
-                                       const InspectionOptions& options,
-                                       const InspectionPlan& plan) {
+                                       const InspectionMission& mission) {
+  const InspectionPlan& plan = mission.plan;
   std::vector<std::string> warnings{
       "the airspace around the structure is assumed free. Check it for trees, wires and anything "
-      "that the model does not contain.",
-      "the flights from the take-off point to the start and from the end back are not planned. "
-      "Fly them in free airspace, at a height that you have checked."};
+      "that the model does not contain."};
   if (!plan.meets_goal) {
     const double attainable = static_cast<double>(plan.attainable[incidence_rule]);
     warnings.push_back(fmt::format(
@@ -30,18 +47,27 @@ std::vector<std::string> make_warnings(const config::MissionSetup& setup,
         "inspection.share",
         100.0 * static_cast<double>(plan.evaluation.seen[incidence_rule]) /
             std::max(attainable, 1.0),
-        100.0 * options.goal.shares[incidence_rule]));
+        100.0 * mission.options.goal.shares[incidence_rule]));
   }
-  const flight::Vehicle& vehicle = setup.flight().required_vehicle();
-  constexpr double seconds_per_minute = 60.0;
-  const double endurance =
-      seconds_per_minute * vehicle.endurance_min * (1.0 - setup.flight().reserve);
-  if (plan.evaluation.duration > endurance) {
+  if (!mission.flight) {
+    warnings.push_back(
+        "no mission with waypoints is written: " + mission.flight_failure +
+        ". Fly the setpoints with an offboard controller, and plan the flights from the take-off "
+        "point to the start and from the end back");
+    return warnings;
+  }
+  const flight::Route& route = mission.flight->mission.route;
+  if (!setup.flight().takeoff) {
+    const Eigen::Vector3d& pad = mission.flight->pad;
     warnings.push_back(fmt::format(
-        "the flight takes {:.1f} min, and one battery of '{}' lasts {:.1f} min with the reserve; "
-        "raise inspection.max_speed, or divide the structure into several missions",
-        plan.evaluation.duration / seconds_per_minute, vehicle.name,
-        endurance / seconds_per_minute));
+        "flight.takeoff is not set: the plan uses the take-off point ({:g}, {:g}, {:g}). Inspect "
+        "it and set flight.takeoff",
+        pad.x(), pad.y(), pad.z()));
+  }
+  if (!route.unreached.empty()) {
+    warnings.push_back(fmt::format(
+        "{} of {} waypoints are not part of the route files; reason for the first: {}",
+        route.unreached.size(), mission.flight->waypoints, route.unreached.front().reason));
   }
   return warnings;
 }
@@ -53,9 +79,12 @@ InspectionMission plan_inspection_mission(const config::MissionSetup& setup,
                                           const std::function<void(const std::string&)>& report) {
   InspectionMission mission;
   mission.options = config::inspection_options(*setup.document);
+  mission.options.flown_deviation = flown_deviation;
   mission.plan = survey::inspection::plan_inspection(
       mission.options, space.site(), {setup.run.seed, setup.run.threads, stop, report});
-  mission.warnings = make_warnings(setup, mission.options, mission.plan);
+  report("planning the flight with waypoints");
+  plan_flight(setup, space, stop, mission);
+  mission.warnings = make_warnings(setup, mission);
   return mission;
 }
 

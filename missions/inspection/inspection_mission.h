@@ -2,11 +2,13 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
 
 #include "missions/config/mission_setup.h"
+#include "missions/inspection/inspection_flight.h"
 #include "missions/inspection/inspection_site.h"
 #include "survey/inspection/flight_evaluation.h"
 #include "survey/inspection/inspection_planner.h"
@@ -16,6 +18,9 @@ namespace skycap::missions::inspection {
 struct InspectionMission {
   survey::inspection::InspectionOptions options;
   survey::inspection::InspectionPlan plan;
+  /// Flight with waypoints. Empty: it cannot be flown so, for the reason in `flight_failure`.
+  std::optional<InspectionFlight> flight;
+  std::string flight_failure;
   std::vector<std::string> warnings;  ///< Warnings for the user, displayed last.
 };
 

@@ -1,6 +1,7 @@
 #include "missions/inspection/inspection_results.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -11,12 +12,15 @@
 
 #include "flight/export/trajectory_file.h"
 #include "geometry/angle.h"
+#include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
 #include "missions/config/mission_document.h"
 #include "missions/inspection/flight_file.h"
 #include "missions/package/field_sheet.h"
 #include "missions/package/flight_files.h"
+#include "missions/package/flight_report.h"
 #include "missions/package/package.h"
+#include "missions/package/pilot_text.h"
 #include "missions/package/settings.h"
 #include "missions/support/json_text.h"
 #include "missions/version.h"
@@ -82,12 +86,56 @@ std::vector<flight::TimedState> timed_states(const InspectionPlan& plan) {
   return states;
 }
 
-/// Formats that cannot express a continuous flight, with the reason.
-Json formats_json() {
-  constexpr const char* stops =
-      "waypoint missions stop at a waypoint or round it by the autopilot's own law, so that the "
-      "flown curve is not the verified one; use setpoints.ned.csv with an offboard controller";
-  return {{"plan", stops}, {"waypoints", stops}, {"kmz", stops}, {"litchi", stops}};
+/// Formats that are not written, with the reason.
+Json formats_json(const InspectionMission& mission, const package::FlightFiles& files) {
+  Json formats = {{"litchi", "commands neither an even rotation of the camera nor a recording"},
+                  {"kml", "commands neither camera nor speed"},
+                  {"geojson", "commands neither camera nor speed"}};
+  if (!mission.flight) {
+    for (const char* name : {"plan", "waypoints", "kmz"}) formats[name] = mission.flight_failure;
+    return formats;
+  }
+  const flight::AutopilotType autopilot = mission.flight->mission.route.vehicle.autopilot;
+  for (const flight::Format format :
+       {flight::Format::plan, flight::Format::waypoints, flight::Format::kmz}) {
+    const flight::FormatInfo& info = flight::format_info(format);
+    const auto written = inspection_formats(autopilot);
+    if (std::ranges::find(written, format) == written.end()) {
+      formats[info.name] = "the vehicle does not read this format";
+    } else if (std::ranges::find(files.written, format, &package::FlightFile::format) ==
+               files.written.end()) {
+      const std::string prefix = std::string("no mission") + info.extension + ": ";
+      std::string reason = "see flight.notes";
+      for (const std::string& note : files.notes) {
+        if (note.starts_with(prefix)) reason = note.substr(prefix.size());
+      }
+      formats[info.name] = reason;
+    }
+  }
+  return formats;
+}
+
+/// Returns the figures of the curve that the autopilot flies from the route files, or null.
+Json flown_json(const InspectionMission& mission) {
+  if (!mission.flight) return {};
+  const InspectionFlight& flight = *mission.flight;
+  double clearance = flight.mission.route.min_clearance;
+  for (const package::FlightFile& file : flight.mission.files.written) {
+    clearance = std::min(clearance, file.min_clearance);
+  }
+  const auto share = [&](std::size_t rule) {
+    return share_of(flight.seen[rule], mission.plan.cloud.size());
+  };
+  return {{"deviation_bound_m", flight.deviation_bound},
+          {"allowed_deviation_m", mission.options.flown_deviation},
+          {"verified_clearance_m", clearance},
+          {"waypoints", flight.waypoints},
+          {"unreached_waypoints", flight.mission.route.unreached.size()},
+          {"sorties", flight.mission.route.sorties.size()},
+          {"recorded_duration_s", flight.recorded_duration},
+          {"pixel", share(pixel_rule)},
+          {"solid", share(solid_rule)},
+          {"incidence", share(incidence_rule)}};
 }
 
 void write_structure(const InspectionPlan& plan, geometry::OutputFolder& folder) {
@@ -97,11 +145,28 @@ void write_structure(const InspectionPlan& plan, geometry::OutputFolder& folder)
     solid.push_back(rules >> solid_rule & 1U);
     incidence.push_back(rules >> incidence_rule & 1U);
   }
+  constexpr std::array<std::uint8_t, 3> seen{86, 180, 233}, unseen{213, 94, 0};
+  std::vector<std::array<std::uint8_t, 3>> colours;
+  for (const std::uint8_t is_seen : incidence) colours.push_back(is_seen != 0 ? seen : unseen);
   geometry::CloudColumns columns;
   columns.positions = plan.cloud.points;
+  columns.colours = colours;
   columns.normals = plan.cloud.normals;
   columns.marks = {{"seen_pixel", pixel}, {"seen_solid", solid}, {"seen", incidence}};
   geometry::write_cloud(folder.stage(structure_name), columns);
+}
+
+/// Stages the route files. A format that cannot be written is a note.
+void stage_route_files(const config::MissionSetup& setup, const InspectionSpace& space,
+                       package::SurveyMission& flight, geometry::OutputFolder& folder) {
+  try {
+    flight.files = package::stage_flight(
+        setup.name, inspection_flight_options(space), flight.route, space.space(),
+        inspection_formats(flight.route.vehicle.autopilot), folder);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::bad_config && error.kind() != ErrorKind::bad_geometry) throw;
+    flight.files.notes.emplace_back(error.what());
+  }
 }
 
 Json vertices_json(const InspectionPlan& plan) {
@@ -117,27 +182,30 @@ Json vertices_json(const InspectionPlan& plan) {
 
 Json inspection_json(const InspectionMission& mission) {
   const InspectionPlan& plan = mission.plan;
-  return {{"duration_s", plan.evaluation.duration},
-          {"length_m", plan.evaluation.length},
-          {"first_tour_s", plan.first_duration},
-          {"range_m", mission.options.camera.range},
-          {"required_clearance_m", mission.options.clearance},
-          {"verified_clearance_m", plan.verified_clearance},
-          {"required_share", mission.options.goal.shares[incidence_rule]},
-          {"attainable_points", plan.attainable[incidence_rule]},
-          {"share_of_attainable",
-           share_of(plan.evaluation.seen[incidence_rule], plan.attainable[incidence_rule])},
-          {"meets_goal", plan.meets_goal},
-          {"evaluation", evaluation_json(plan.evaluation)},
-          {"search",
-           {{"moves", mission.options.moves},
-            {"searches", mission.options.searches},
-            {"best_search", plan.search},
-            {"evaluated_moves", plan.evaluated_moves},
-            {"cells", plan.cells}}},
-          {"smoothing_s", {plan.smoothing.shorter, plan.smoothing.longer}},
-          {"vertices", vertices_json(plan)},
-          {"formats_not_written", formats_json()}};
+  return {
+      {"duration_s", plan.evaluation.duration},
+      {"length_m", plan.evaluation.length},
+      {"first_tour_s", plan.first_duration},
+      {"range_m", mission.options.camera.range},
+      {"required_clearance_m", mission.options.clearance},
+      {"verified_clearance_m", plan.verified_clearance},
+      {"required_share", mission.options.goal.shares[incidence_rule]},
+      {"attainable_points", plan.attainable[incidence_rule]},
+      {"share_of_attainable",
+       share_of(plan.evaluation.seen[incidence_rule], plan.attainable[incidence_rule])},
+      {"meets_goal", plan.meets_goal},
+      {"evaluation", evaluation_json(plan.evaluation)},
+      {"search",
+       {{"moves", mission.options.moves},
+        {"searches", mission.options.searches},
+        {"best_search", plan.search},
+        {"evaluated_moves", plan.evaluated_moves},
+        {"cells", plan.cells}}},
+      {"smoothing_s", {plan.smoothing.shorter, plan.smoothing.longer}},
+      {"vertices", vertices_json(plan)},
+      {"flown", flown_json(mission)},
+      {"formats_not_written", formats_json(mission, mission.flight ? mission.flight->mission.files
+                                                                   : package::FlightFiles{})}};
 }
 
 }  // namespace
@@ -220,19 +288,31 @@ std::string plan_text(const config::MissionSetup& setup, const InspectionMission
       "  start     ({:.2f}, {:.2f}, {:.2f}), end ({:.2f}, {:.2f}, {:.2f}), both at rest\n",
       start.position.x(), start.position.y(), start.position.z(), end.position.x(),
       end.position.y(), end.position.z());
-  return text +
-         fmt::format("  search    {} changes evaluated; flight time of the initial tour {:.0f} s\n",
-                     plan.evaluated_moves, plan.first_duration);
+  text +=
+      fmt::format("  search    {} changes evaluated; flight time of the initial tour {:.0f} s\n",
+                  plan.evaluated_moves, plan.first_duration);
+  if (!mission.flight) return text;
+  const InspectionFlight& flight = *mission.flight;
+  return text + fmt::format(
+                    "  files     {} waypoints, at most {:.2f} m from the planned curve (allowed: "
+                    "{:.2f} m); "
+                    "the flown curve sees {} of all points at a limited incidence\n",
+                    flight.waypoints, flight.deviation_bound, mission.options.flown_deviation,
+                    percent(share_of(flight.seen[incidence_rule], plan.cloud.size())));
 }
 
-std::string warnings_text(const InspectionMission& mission) {
+std::string warnings_text(const config::MissionSetup& setup, const InspectionMission& mission) {
+  if (mission.flight) {
+    return package::flight_text(mission.flight->mission) + "\n" +
+           package::pilot_text(setup.flight(), mission.flight->mission, mission.warnings);
+  }
   std::string text;
   for (const std::string& warning : mission.warnings) text += "Warning: " + warning + "\n";
   return text;
 }
 
-void stage_inspection_mission(const config::MissionSetup& setup, const InspectionMission& mission,
-                              geometry::OutputFolder& folder) {
+void stage_inspection_mission(const config::MissionSetup& setup, const InspectionSpace& space,
+                              InspectionMission& mission, geometry::OutputFolder& folder) {
   folder.replace([](std::string_view name) {
     return name == package::free_space_name || name == package::report_name ||
            name == package::field_sheet_name || package::is_flight_file(name);
@@ -243,14 +323,20 @@ void stage_inspection_mission(const config::MissionSetup& setup, const Inspectio
   folder.write(ned_name, write_trajectory_csv(states, flight::Frame::ned));
   folder.write(tum_name, write_tum(camera_poses(states)));
   write_structure(mission.plan, folder);
-  const Json summary{{"mission", setup.name},
-                     {"kind", "inspection"},
-                     {"seed", setup.run.seed},
-                     {"version", version},
-                     {"complete", true},
-                     {"warnings", mission.warnings},
-                     {"inspection", inspection_json(mission)},
-                     {"settings", package::settings_json(setup)}};
+  if (mission.flight) {
+    stage_route_files(setup, space, mission.flight->mission, folder);
+  }
+  Json summary{{"mission", setup.name},
+               {"kind", "inspection"},
+               {"seed", setup.run.seed},
+               {"version", version},
+               {"complete", true},
+               {"warnings", mission.warnings},
+               {"inspection", inspection_json(mission)}};
+  if (mission.flight) {
+    summary["flight"] = package::route_json(mission.flight->mission, mission.flight->pad);
+  }
+  summary["settings"] = package::settings_json(setup);
   folder.write(package::summary_name, support::json_text(summary));
 }
 

@@ -21,13 +21,16 @@ nlohmann::ordered_json evaluation_json(const survey::inspection::FlightEvaluatio
 /// Returns the printed summary of a plan, without the folder and the warnings.
 std::string plan_text(const config::MissionSetup& setup, const InspectionMission& mission);
 
-/// Returns a line "Warning: ..." for each warning.
-std::string warnings_text(const InspectionMission& mission);
+/// Returns the route with its files, the steps for the pilot, and a line "Warning: ..." for each
+/// warning. Without route files, returns only the warnings.
+std::string warnings_text(const config::MissionSetup& setup, const InspectionMission& mission);
 
 /// Stages summary.json, the flight, and structure.ply: the points of the structure with the rules
 /// by which they are seen. The files of the flight are inspection.csv, setpoints.enu.csv,
-/// setpoints.ned.csv and camera.tum. The commit removes files of earlier runs of another kind.
-void stage_inspection_mission(const config::MissionSetup& setup, const InspectionMission& mission,
-                              geometry::OutputFolder& folder);
+/// setpoints.ned.csv and camera.tum. Also stages the route files for the vehicle's autopilot, each
+/// read back and verified, and sets them in `mission`. The commit removes files of earlier runs of
+/// another kind.
+void stage_inspection_mission(const config::MissionSetup& setup, const InspectionSpace& space,
+                              InspectionMission& mission, geometry::OutputFolder& folder);
 
 }  // namespace skycap::missions::inspection

@@ -21,6 +21,10 @@ class InspectionSpace {
   /// Returns the site for the planner. This object must outlive it.
   survey::inspection::InspectionSite site() const;
 
+  /// Options of the flight, with the structure as an obstacle.
+  const flight::FlightOptions& flight() const { return flight_; }
+  const flight::FreeSpace& space() const { return *space_; }
+
  private:
   void add_cloud(const config::MissionSetup& setup, const std::filesystem::path& file);
   void add_targets(const config::MissionSetup& setup);

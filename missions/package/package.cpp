@@ -340,9 +340,8 @@ PackageSummary parse_package_summary(const std::string& text, const std::string&
     const Json json = parse_summary(text, name);
     if (json.value("kind", std::string()) == "inspection") {
       fail(name,
-           "describes an inspection, a continuous flight that route files with waypoints cannot "
-           "represent; use inspection.csv, setpoints.enu.csv, setpoints.ned.csv or camera.tum in "
-           "the same folder");
+           "describes an inspection, whose route files skycap plan writes; use the files in this "
+           "folder, or plan the mission again");
     }
     PackageSummary summary;
     summary.mission = mission_from_settings(json.at("settings"), name, overrides);

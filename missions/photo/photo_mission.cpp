@@ -13,7 +13,7 @@
 #include "flight/route/tour.h"
 #include "geometry/error.h"
 #include "missions/config/mission_document.h"
-#include "missions/photo/takeoff_point.h"
+#include "missions/wizard/takeoff_point.h"
 
 namespace skycap::missions::photo {
 namespace {
@@ -155,7 +155,7 @@ void plan_route(const config::MissionSetup& setup, const PhotoAirspace& airspace
   if (views.empty()) return;
   mission.flight.emplace();
   mission.flight->image_motion = options.image_motion_bounds();
-  mission.pad = choose_takeoff(options, views);
+  mission.pad = wizard::choose_takeoff(options, views);
   const std::vector<package::Polyline> paths(views.size());
   mission.flight->route =
       package::plan_flight(options, airspace.measured(), mission.pad, views, paths, {}, stop);

@@ -9,6 +9,7 @@
 #include "missions/package/package.h"
 #include "missions/report/comparison_page.h"
 #include "missions/report/district_page.h"
+#include "missions/report/inspection_page.h"
 #include "missions/report/photo_page.h"
 #include "missions/report/scan_page.h"
 #include "missions/report/survey_report.h"
@@ -39,11 +40,12 @@ std::vector<ResultPage> pages_in(const fs::path& folder) {
                                        names);
 }
 
-/// Returns the report of summary.json: of a survey or of a photo mission.
+/// Returns the report of summary.json: of a survey, a photo mission or an inspection.
 std::string summary_page(const ResultFinder& results, std::size_t max_points) {
-  return is_photo_summary(read_results(results(package::summary_name)))
-             ? photo_page(results, max_points)
-             : survey_report(results, max_points);
+  const nlohmann::ordered_json summary = read_results(results(package::summary_name));
+  if (is_photo_summary(summary)) return photo_page(results, max_points);
+  if (is_inspection_summary(summary)) return inspection_page(results, max_points);
+  return survey_report(results, max_points);
 }
 
 /// Replaces names of staged files in a message by their final names.

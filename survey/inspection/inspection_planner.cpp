@@ -71,9 +71,19 @@ SpaceOptions space_options(const InspectionOptions& options, const InspectionSit
                 "the height limits leave no space around the structure; check site.min_height and "
                 "site.max_height");
   }
-  space.clearance = options.clearance;
+  // The search divides the box into cells of one cubic metre.
+  constexpr double max_volume = 1e8;
+  if (const Eigen::Vector3d sides = space.box.sizes();
+      !(sides.array().max(1.0).prod() <= max_volume)) {
+    throw Error(ErrorKind::bad_geometry,
+                joined_text("the structure with the range around it spans ", sides.x(), " x ",
+                            sides.y(), " x ", sides.z(),
+                            " m, which is too large; lower the range, remove distant points, or "
+                            "divide the structure"));
+  }
+  space.clearance = options.planned_clearance();
   space.max_distance =
-      std::max(options.clearance + distance_margin, range_share * options.camera.range);
+      std::max(options.planned_clearance() + distance_margin, range_share * options.camera.range);
   space.distance = site.distance;
   space.is_free = site.is_free;
   space.threads = threads;
@@ -86,7 +96,7 @@ double verified_distance(const InspectionOptions& options, const InspectionSite&
   // The flight leaves a chord by at most a dt^2 / 8.
   const double chord = options.limits.acceleration * sample_interval * sample_interval / 8.0;
   if (!site.segment_distance) return nearest_distance(flight, cloud).points - chord;
-  const double up_to = options.clearance + options.camera.range;
+  const double up_to = options.planned_clearance() + options.camera.range;
   double nearest = up_to;
   for (std::size_t i = 1; i < flight.size(); ++i) {
     nearest = std::min(nearest,
@@ -124,19 +134,19 @@ std::vector<Proposal> ranked(const std::vector<SearchResult>& results) {
   return proposals;
 }
 
-/// Verifies routes, best first, and returns the first one that keeps clearance and limits.
-InspectionPlan verified_plan(const InspectionOptions& options, const InspectionSite& site,
-                             const StructureCloud& cloud, const std::vector<SearchResult>& results,
-                             unsigned threads) {
+/// Verifies routes, best first, and returns the first one that keeps clearance and limits. Sets the
+/// largest distance of a route, if `best_distance` is not null.
+std::optional<InspectionPlan> find_verified_plan(
+    const InspectionOptions& options, const InspectionSite& site, const StructureCloud& cloud,
+    const std::vector<SearchResult>& results, unsigned threads, double* best_distance = nullptr) {
   InspectionPlan plan;
   plan.smoothing = make_smoothing(options.limits);
-  double best_distance = 0.0;
   for (const Proposal& proposal : ranked(results)) {
     std::vector<FlightSample> samples =
         sample_flight(proposal.route->vertices, plan.smoothing, sample_interval);
     const double distance = verified_distance(options, site, cloud, samples);
-    best_distance = std::max(best_distance, distance);
-    if (distance < options.clearance) continue;
+    if (best_distance != nullptr) *best_distance = std::max(*best_distance, distance);
+    if (distance < options.planned_clearance()) continue;
     FlightEvaluation evaluation =
         evaluate_flight(samples, cloud, evaluation_options(options, threads));
     if (!evaluation.keeps_limits()) continue;
@@ -149,13 +159,53 @@ InspectionPlan verified_plan(const InspectionOptions& options, const InspectionS
     plan.first_duration = results[proposal.search].first_duration;
     return plan;
   }
-  throw Error(ErrorKind::bad_geometry,
-              best_distance > 0.0
-                  ? joined_text("the search found no flight that keeps the clearance of ",
-                                options.clearance, " m from all surfaces (best: ", best_distance,
-                                " m); raise inspection.moves or lower the clearance")
-                  : "the search found no flight that keeps the clearance and the motion limits; "
-                    "raise inspection.moves, or lower the clearance or inspection.max_speed");
+  return std::nullopt;
+}
+
+InspectionPlan verified_plan(const InspectionOptions& options, const InspectionSite& site,
+                             const StructureCloud& cloud, const std::vector<SearchResult>& results,
+                             unsigned threads) {
+  double best_distance = 0.0;
+  std::optional<InspectionPlan> plan =
+      find_verified_plan(options, site, cloud, results, threads, &best_distance);
+  if (plan) return *std::move(plan);
+  throw Error(
+      ErrorKind::bad_geometry,
+      best_distance > 0.0
+          ? joined_text("the search found no flight that keeps the clearance of ",
+                        options.planned_clearance(), " m from all surfaces (best: ", best_distance,
+                        " m); raise inspection.moves or lower the clearance")
+          : "the search found no flight that keeps the clearance and the motion limits; raise "
+            "inspection.moves, or lower the clearance or inspection.max_speed");
+}
+
+/// Returns the number of points by which a flight misses each share of the goal.
+PerRule<std::size_t> missing_points(const FlightEvaluation& evaluation, const CoverageGoal& goal,
+                                    const ViewCandidates& candidates) {
+  const std::size_t points = candidates.attainable.size();
+  const PerRule<std::size_t> allowed = goal.allowed_unseen(candidates.attainable, points);
+  PerRule<std::size_t> missing{};
+  for (std::size_t rule = 0; rule < sight_rules; ++rule) {
+    const std::size_t unseen = points - evaluation.seen[rule];
+    if (goal.shares[rule] > 0.0 && unseen > allowed[rule]) missing[rule] = unseen - allowed[rule];
+  }
+  return missing;
+}
+
+/// Requires more views of the points that the evaluation does not see by the rules that are missed.
+void require_more_views(const FlightEvaluation& evaluation, const PerRule<std::size_t>& missing,
+                        const ViewCandidates& candidates, SearchOptions& search) {
+  const std::size_t points = candidates.attainable.size();
+  constexpr std::uint8_t max_more = 100;
+  for (std::size_t rule = 0; rule < sight_rules; ++rule) {
+    if (missing[rule] == 0) continue;
+    search.more_views[rule].resize(points, 0);
+    for (std::size_t i = 0; i < points; ++i) {
+      const bool is_seen = (evaluation.rules_seen[i] >> rule & 1U) != 0;
+      std::uint8_t& more = search.more_views[rule][i];
+      if (!is_seen && candidates.attainable[i] > rule && more < max_more) ++more;
+    }
+  }
 }
 
 }  // namespace
@@ -167,9 +217,11 @@ void InspectionOptions::validate() const {
     if (!is_valid) throw Error(ErrorKind::bad_config, what);
   };
   require(clearance > 0.0 && std::isfinite(clearance), "clearance must be positive");
-  require(camera.range > clearance,
+  require(flown_deviation >= 0.0 && std::isfinite(flown_deviation),
+          "flown_deviation must not be negative");
+  require(camera.range > planned_clearance(),
           joined_text("range (", camera.range, " m) must be greater than the clearance (",
-                      clearance, " m); raise the range or lower the clearance"));
+                      planned_clearance(), " m); raise the range or lower the clearance"));
   require(pitch.min < pitch.max, "the minimum pitch must be less than the maximum pitch");
   for (const double share : goal.shares) {
     require(share >= 0.0 && share <= 1.0, "shares must be between 0 and 1");
@@ -214,6 +266,13 @@ InspectionPlan plan_inspection(const InspectionOptions& options, const Inspectio
   const ViewCandidates candidates = draw_candidates(space, cells, tour, random);
   check_stop();
   const std::vector<Vertex> first = make_first_tour(space, cells, candidates, tour, run.stop);
+  constexpr double max_duration = 24.0 * 3600.0;
+  const Smoothing smoothing = make_smoothing(options.limits);
+  if (!(flight_duration(leg_durations(first, smoothing), smoothing) <= max_duration)) {
+    throw Error(ErrorKind::bad_config,
+                "the limits of motion allow no flight around the structure in a day; raise the "
+                "limits of speed, acceleration, jerk or yaw");
+  }
 
   SearchOptions search;
   search.limits = options.limits;
@@ -236,6 +295,38 @@ InspectionPlan plan_inspection(const InspectionOptions& options, const Inspectio
   check_stop();
   report("verifying the flight");
   InspectionPlan plan = verified_plan(options, site, cloud, results, threads);
+  // The weights of the search leave out the last few points if they take long. By the rule "pixel"
+  // it also counts points that a nearer one hides in each of their few views.
+  PerRule<std::size_t> missing = missing_points(plan.evaluation, options.goal, candidates);
+  const auto sum = [](const PerRule<std::size_t>& counts) {
+    return counts[0] + counts[1] + counts[2];
+  };
+  constexpr int max_repairs = 3;
+  for (int repair = 0; sum(missing) > 0 && repair < max_repairs; ++repair) {
+    report(joined_text("adding views of ", sum(missing), " points"));
+    if (plan.meets_goal) require_more_views(plan.evaluation, missing, candidates, search);
+    constexpr std::size_t move_share = 15, min_moves = 500;
+    search.moves = std::max(options.moves / move_share, min_moves);
+    search.first_phase_targets = cloud.size();
+    search.last_phase_share = 1.0;
+    search.start_temperature = 0.1;
+    search.min_unseen_weight = 1.0;
+    geometry::RandomNumbers own(run.seed, options.searches + 1 + static_cast<std::size_t>(repair));
+    results.push_back(search_route(space, cells, candidates, plan.vertices, search, own, run.stop));
+    check_stop();
+    if (results.back().improvements.empty()) continue;
+    std::optional<InspectionPlan> repaired =
+        find_verified_plan(options, site, cloud, {results.back()}, threads);
+    if (!repaired) continue;
+    const PerRule<std::size_t> left =
+        missing_points(repaired->evaluation, options.goal, candidates);
+    if (sum(left) >= sum(missing)) continue;
+    missing = left;
+    repaired->search = plan.search;
+    repaired->first_duration = plan.first_duration;
+    plan = *std::move(repaired);
+  }
+  plan.meets_goal = plan.meets_goal && sum(missing) == 0;
   for (const SearchResult& result : results) plan.evaluated_moves += result.evaluated;
   for (const std::uint8_t level : candidates.attainable) {
     for (std::size_t rule = 0; rule < level; ++rule) ++plan.attainable[rule];

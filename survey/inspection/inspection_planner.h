@@ -29,11 +29,16 @@ struct InspectionOptions {
   MotionLimits limits;
   CoverageGoal goal;
   PitchRange pitch;
-  double clearance = 3.0;         ///< Distance from all obstacles at every moment [m].
+  double clearance = 3.0;  ///< Distance from all obstacles at every moment [m].
+  /// Distance by which the flown curve may leave the planned one. It is kept in addition to the
+  /// clearance [m].
+  double flown_deviation = 0.0;
   std::size_t moves = 60'000;     ///< Budget of each search, in tried moves.
   std::size_t searches = 2;       ///< Independent searches with different seeds.
   std::size_t candidates = 2500;  ///< Random positions of viewpoints for the first tour.
 
+  /// Distance from all obstacles that the planned curve keeps [m].
+  double planned_clearance() const { return clearance + flown_deviation; }
   /// Throws Error{bad_config} naming the first value outside its interval.
   void validate() const;
 };
@@ -69,12 +74,13 @@ struct InspectionPlan {
   StructureCloud cloud;               ///< Points that the evaluation refers to.
   FlightEvaluation evaluation;
   PerRule<std::size_t> attainable{};  ///< Points that some position sees, a lower bound.
-  bool meets_goal = false;            ///< By the planner's count, which is conservative.
-  double verified_clearance = 0.0;    ///< Verified distance from all obstacles [m].
-  double first_duration = 0.0;        ///< Duration of the first tour [s].
-  std::size_t search = 0;             ///< Search that found the flight.
-  std::size_t evaluated_moves = 0;    ///< Over all searches.
-  std::size_t cells = 0;              ///< Computed cells of visibility.
+  /// By the planner's count, which is conservative, and by the evaluation.
+  bool meets_goal = false;
+  double verified_clearance = 0.0;  ///< Verified distance from all obstacles [m].
+  double first_duration = 0.0;      ///< Duration of the first tour [s].
+  std::size_t search = 0;           ///< Search that found the flight.
+  std::size_t evaluated_moves = 0;  ///< Over all searches.
+  std::size_t cells = 0;            ///< Computed cells of visibility.
 };
 
 /// Interval of the samples of a plan [s].

@@ -17,8 +17,8 @@ using geometry::RandomNumbers;
 constexpr double view_interval = 0.4;       // between samples of the view [s]
 constexpr double clearance_interval = 0.1;  // between samples of position [s]
 constexpr double penalty_interval = 0.2;    // flight time that one penalty stands for [s]
-constexpr double start_temperature = 1.0, end_temperature = 0.03;  // [s]
-constexpr double max_weight = 8.0;                                 // of an unseen point [s]
+constexpr double end_temperature = 0.03;    // [s]
+constexpr double max_weight = 8.0;          // of an unseen point [s]
 constexpr std::size_t weight_moves = 500;
 
 /// What one interval of the polygon adds to the route.
@@ -91,10 +91,20 @@ class Penalties {
 /// Number of samples in which each point is seen by each rule, and the number of unseen points.
 class SightCounts {
  public:
-  SightCounts(std::size_t targets, int min_views)
+  SightCounts(std::size_t targets, int min_views,
+              const PerRule<std::vector<std::uint8_t>>& more_views)
       : targets_(targets), min_views_(static_cast<std::uint16_t>(min_views)) {
+    std::uint8_t most = 0;
+    for (const auto& more : more_views) {
+      for (const std::uint8_t views : more) most = std::max(most, views);
+    }
+    // Counts begin lower where more views are needed, so that one threshold serves all points.
+    min_views_ = static_cast<std::uint16_t>(min_views_ + most);
     for (std::size_t rule = 0; rule < sight_rules; ++rule) {
-      counts_[rule].assign(targets, 0);
+      counts_[rule].assign(targets, most);
+      for (std::size_t i = 0; i < std::min(targets, more_views[rule].size()); ++i) {
+        counts_[rule][i] = static_cast<std::uint16_t>(most - more_views[rule][i]);
+      }
       unseen_[rule] = targets;
     }
   }
@@ -297,20 +307,40 @@ class RouteMoves {
     return std::min(space_.required_distance(), 0.9 * cells_.camera().range);
   }
 
+  /// Draws one of the rules that the goal requires.
+  std::size_t draw_rule() {
+    std::vector<std::size_t> required;
+    for (std::size_t i = 0; i < sight_rules; ++i) {
+      if (options_.goal.shares[i] > 0.0) required.push_back(i);
+    }
+    if (required.empty()) return 0;
+    return required.size() == 1 ? required[0] : required[pick(required.size())];
+  }
+
+  /// Draws an attainable point that is not seen. The last few of many points are not found by
+  /// trying, so all are searched from the last one tried.
+  std::optional<std::uint32_t> draw_unseen(std::size_t rule, const SightCounts& counts,
+                                           const std::vector<std::uint8_t>& attainable) {
+    constexpr int tries = 200;
+    const auto is_wanted = [&](std::size_t point) {
+      return attainable[point] > rule && !counts.is_seen(rule, point);
+    };
+    std::size_t point = 0;
+    for (int i = 0; i < tries; ++i) {
+      point = pick(counts.targets());
+      if (is_wanted(point)) return static_cast<std::uint32_t>(point);
+    }
+    for (std::size_t i = 1; i < counts.targets(); ++i) {
+      const std::size_t other = (point + i) % counts.targets();
+      if (is_wanted(other)) return static_cast<std::uint32_t>(other);
+    }
+    return std::nullopt;
+  }
+
   Change repair(Route route, const SightCounts& counts,
                 const std::vector<std::uint8_t>& attainable) {
-    std::size_t rule = 0;
-    for (std::size_t i = 0; i < sight_rules; ++i) {
-      if (options_.goal.shares[i] > 0.0) rule = i;
-    }
-    constexpr int tries = 200;
-    std::optional<std::uint32_t> target;
-    for (int i = 0; i < tries && !target; ++i) {
-      const std::size_t point = pick(counts.targets());
-      if (attainable[point] > rule && !counts.is_seen(rule, point)) {
-        target = static_cast<std::uint32_t>(point);
-      }
-    }
+    const std::size_t rule = draw_rule();
+    const std::optional<std::uint32_t> target = draw_unseen(rule, counts, attainable);
     if (!target) return std::nullopt;
     const std::optional<Vector3d> position =
         draw_viewpoint(*target, static_cast<std::uint32_t>(rule + 1));
@@ -399,7 +429,7 @@ class Annealing {
   void start(std::vector<Vertex> route, std::size_t targets) {
     route_ = std::move(route);
     durations_ = leg_durations(route_, smoothing_);
-    counts_.emplace(targets, options_.goal.min_views);
+    counts_.emplace(targets, options_.goal.min_views, options_.more_views);
     allowed_ = options_.goal.allowed_unseen(attainable_, targets);
     intervals_.assign(route_.size() + 1, {});
     for (std::size_t i = 0; i < intervals_.size(); ++i) {
@@ -549,7 +579,8 @@ class Annealing {
 
   double min_weight() const {
     constexpr double per_target = 300.0;
-    return std::min(max_weight, per_target / static_cast<double>(counts_->targets()));
+    return std::min(max_weight, std::max(options_.min_unseen_weight,
+                                         per_target / static_cast<double>(counts_->targets())));
   }
   void set_min_weights() { weights_.fill(min_weight()); }
   double unseen_cost() const {
@@ -648,7 +679,7 @@ SearchResult search_route(const ReachableSpace& space, const SightCells& cells,
     std::optional<std::vector<Vertex>> next =
         moves.draw(annealing.route(), annealing.counts(), candidates.attainable);
     const double temperature =
-        start_temperature * std::pow(end_temperature / start_temperature, used);
+        options.start_temperature * std::pow(end_temperature / options.start_temperature, used);
     const double draw = 1.0 - random.uniform();  // in (0, 1]
     if (!next) continue;
     if (!annealing.try_route(std::move(*next), -temperature * std::log(draw))) continue;

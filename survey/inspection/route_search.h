@@ -38,6 +38,11 @@ struct SearchOptions {
   std::size_t moves = 60'000;           ///< Budget: the number of tried moves.
   std::size_t first_phase_targets = 0;  ///< Points of the first phase; the last uses all of them.
   double last_phase_share = 0.15;       ///< Share of the moves in the last phase.
+  double start_temperature = 1.0;       ///< Temperature of the annealing, which ends at 0.03 [s].
+  double min_unseen_weight = 0.0;       ///< Minimum cost of a point above the goal [s].
+  /// Per rule and point: samples that a point must be seen in addition to goal.min_views. Empty:
+  /// none. For points that the evaluation does not see although the search counts them.
+  PerRule<std::vector<std::uint8_t>> more_views{};
 };
 
 /// Route of a search.

@@ -1,19 +1,24 @@
 /// Inspection flights: duration, shares by the three rules of visibility, distances and limits of a
 /// planned flight, or of a flight of another program, around a cloud or a scene model.
 ///
-///   inspection_benchmark (--cloud FILE | --scene NAME) [--flight FILE] [--range M, 8]
-///                        [--clearance M, 3] [--shares A B C, 0 0 0.98] [--views N, 1]
-///                        [--min-height M] [--moves N, 60000] [--searches N, 1] [--seed N, 1]
-///                        [--spacing M, range / 40] [--threads N, 1]
+///   inspection_benchmark (--cloud FILE | --scene NAME) [--flight FILE | --pattern orbit|rows]
+///                        [--range M, 8] [--clearance M, 3] [--shares A B C, 0 0 0.98]
+///                        [--views N, 1] [--min-height M] [--moves N, 60000] [--searches N, 1]
+///                        [--seed N, 1] [--spacing M, range / 40] [--threads N, 1]
 ///
 /// NAME is a model of sim/models/models.h, such as radcliffe-camera, whose surface is sampled at
 /// the spacing. Clouds are used as they are. The camera is 75 degrees wide and 55 degrees high, the
 /// pitch is between -85 and 70 degrees, and the limits are 2 m/s, 1 m/s^2, 0.5 m/s^3, 60 degrees/s
 /// and 30 degrees/s^2: those of FC-Planner (ICRA 2024). --flight evaluates a flight instead of
-/// planning one: t x y z yaw pitch per line.
+/// planning one: t x y z yaw pitch per line. --pattern evaluates a pattern around the box of the
+/// structure, at the same limits: circles that look at its axis, or rows along the four sides and
+/// above the roof that look straight at them. Rows overlap by 30%.
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -37,7 +42,7 @@ using geometry::degrees_per_radian;
 using geometry::radians_per_degree;
 
 struct Arguments {
-  std::string cloud, scene, flight;
+  std::string cloud, scene, flight, pattern;
   double spacing = 0.0;
   std::optional<double> min_height;
   InspectionOptions options;
@@ -67,6 +72,8 @@ Arguments parse(int count, char** values) {
       arguments.scene = text();
     } else if (name == "--flight") {
       arguments.flight = text();
+    } else if (name == "--pattern") {
+      arguments.pattern = text();
     } else if (name == "--range") {
       options.camera.range = number();
     } else if (name == "--clearance") {
@@ -147,17 +154,103 @@ void print(const FlightEvaluation& evaluation) {
   std::printf("  limits           %s\n", evaluation.keeps_limits() ? "kept" : "exceeded");
 }
 
+Vertex make_vertex(const Eigen::Vector3d& position, double yaw, double pitch) {
+  Vertex vertex;
+  vertex.position = position;
+  vertex.yaw = std::remainder(yaw, 2.0 * std::numbers::pi);
+  vertex.pitch = pitch;
+  return vertex;
+}
+
+/// Returns the distance from the structure, and the distance between rows, of a pattern [m].
+struct PatternSizes {
+  explicit PatternSizes(const InspectionOptions& options)
+      : standoff(0.5 * (options.clearance + options.camera.range)),
+        rows(0.7 * 2.0 * standoff * std::tan(0.5 * options.camera.vertical_fov)) {}
+  double standoff, rows;
+};
+
+/// Returns heights from `low` to `high` at equal distances of at most `step`.
+std::vector<double> levels(double low, double high, double step) {
+  const int count = std::max(1, static_cast<int>(std::ceil((high - low) / step)));
+  std::vector<double> result;
+  for (int i = 0; i <= count; ++i) result.push_back(low + (high - low) * i / count);
+  return result;
+}
+
+std::vector<Vertex> orbit(const Eigen::AlignedBox3d& box, double low,
+                          const InspectionOptions& options) {
+  const PatternSizes sizes(options);
+  const double radius = 0.5 * box.sizes().head<2>().norm() + sizes.standoff;
+  std::vector<Vertex> vertices;
+  constexpr int corners = 36;
+  for (const double height : levels(low, box.max().z() + sizes.standoff, sizes.rows)) {
+    const double pitch = height > box.max().z() ? -45.0 * radians_per_degree : 0.0;
+    for (int i = 0; i <= corners; ++i) {
+      const double angle = 2.0 * std::numbers::pi * i / corners;
+      const Eigen::Vector3d at(box.center().x() + radius * std::cos(angle),
+                               box.center().y() + radius * std::sin(angle), height);
+      vertices.push_back(make_vertex(at, angle + std::numbers::pi, pitch));
+    }
+  }
+  return vertices;
+}
+
+std::vector<Vertex> rows(const Eigen::AlignedBox3d& box, double low,
+                         const InspectionOptions& options) {
+  const PatternSizes sizes(options);
+  const Eigen::Vector3d min = box.min().array() - sizes.standoff;
+  const Eigen::Vector3d max = box.max().array() + sizes.standoff;
+  const std::array<Eigen::Vector2d, 4> corners{
+      Eigen::Vector2d(min.x(), min.y()), Eigen::Vector2d(max.x(), min.y()),
+      Eigen::Vector2d(max.x(), max.y()), Eigen::Vector2d(min.x(), max.y())};
+  std::vector<Vertex> vertices;
+  for (std::size_t side = 0; side < corners.size(); ++side) {
+    const double yaw = 0.5 * std::numbers::pi * static_cast<double>(side + 1);
+    bool is_forward = true;
+    for (const double height : levels(low, box.max().z(), sizes.rows)) {
+      for (const bool is_end : {!is_forward, is_forward}) {
+        const Eigen::Vector2d& at = corners[(side + (is_end ? 1 : 0)) % corners.size()];
+        vertices.push_back(make_vertex({at.x(), at.y(), height}, yaw, 0.0));
+      }
+      is_forward = !is_forward;
+    }
+  }
+  bool is_forward = true;
+  for (const double y : levels(box.min().y(), box.max().y(), sizes.rows)) {
+    for (const bool is_end : {!is_forward, is_forward}) {
+      vertices.push_back(make_vertex({is_end ? box.max().x() : box.min().x(), y, max.z()},
+                                     0.5 * std::numbers::pi, options.pitch.min));
+    }
+    is_forward = !is_forward;
+  }
+  return vertices;
+}
+
+/// Returns the samples of a pattern around the structure.
+std::vector<FlightSample> pattern_flight(const Arguments& arguments, const StructureCloud& cloud) {
+  const Eigen::AlignedBox3d box = cloud.box();
+  const double low = std::max(arguments.min_height.value_or(box.min().z()), box.min().z());
+  const std::vector<Vertex> vertices = arguments.pattern == "orbit"
+                                           ? orbit(box, low, arguments.options)
+                                           : rows(box, low, arguments.options);
+  return sample_flight(vertices, make_smoothing(arguments.options.limits), sample_interval);
+}
+
 void run(const Arguments& arguments) {
   const InspectionSite site = make_site(arguments);
-  if (!arguments.flight.empty()) {
+  if (!arguments.flight.empty() || !arguments.pattern.empty()) {
     EvaluationOptions options;
     options.camera = arguments.options.camera;
     options.limits = arguments.options.limits;
     options.min_pitch = arguments.options.pitch.min;
     options.max_pitch = arguments.options.pitch.max;
     options.threads = arguments.run.threads;
-    print(evaluate_flight(missions::inspection::read_flight_csv(arguments.flight),
-                          make_structure_cloud(site.points, site.normals), options));
+    const StructureCloud cloud = make_structure_cloud(site.points, site.normals);
+    print(evaluate_flight(arguments.pattern.empty()
+                              ? missions::inspection::read_flight_csv(arguments.flight)
+                              : pattern_flight(arguments, cloud),
+                          cloud, options));
     std::printf("  processor        %8.1f s\n", processor_seconds());
     return;
   }

@@ -137,8 +137,8 @@ Modules architecture() {
               {"package", "wizard", "config", "scan", "simulation", "evaluation", "session",
                "scene", "site_data", "support"});
   add_library({"inspection"}, {"sim", "survey", "flight"},
-              {"package", "config", "scan", "simulation", "evaluation", "session", "scene",
-               "site_data", "support"});
+              {"package", "wizard", "config", "scan", "simulation", "evaluation", "session",
+               "scene", "site_data", "support"});
   add_library({"report"}, {"sim", "survey", "flight"},
               {"package", "config", "scan", "simulation", "evaluation", "session", "scene",
                "site_data", "support"});

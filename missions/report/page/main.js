@@ -13,7 +13,7 @@ async function load_library(name) {
 }
 
 const kinds = { survey: "Survey report", cloud: "Point cloud", mission: "Mission, before the survey",
-  scan: "Scan report", comparison: "Benchmark", trials: "Trials of a mission", photos: "Photo mission", district: "District report" };
+  scan: "Scan report", comparison: "Benchmark", trials: "Trials of a mission", photos: "Photo mission", inspection: "Inspection flight", district: "District report" };
 
 function facts_of(data) {
   const settings = value_at(data, "summary.settings") || {}, facts = [];

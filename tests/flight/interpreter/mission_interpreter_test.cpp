@@ -290,7 +290,8 @@ TEST_P(MissionInterpreter, VerifiesCornersWithoutStopAsTriangles) {
     MavlinkMission file = good();
     file.items.resize(2);
     const auto add = [&](const Eigen::Vector3d& position, double hold) {
-      MissionItem item{command::waypoint, frame::relative, {hold, 0.3, 0, 0, 0, 0, 0}, true, 0};
+      const double radius = hold > 0.0 ? 0.3 : 100.0;  // PX4 turns within the radius.
+      MissionItem item{command::waypoint, frame::relative, {hold, radius, 0, 0, 0, 0, 0}, true, 0};
       item.number = file.items.back().number + 1;
       move(item, position);
       file.items.push_back(item);
@@ -313,6 +314,47 @@ TEST_P(MissionInterpreter, VerifiesCornersWithoutStopAsTriangles) {
   EXPECT_THAT(check_route({{-20, -25, 8}, corner, {-20, 25, 8}}, KnownSpace(sample_site()), 2.0),
               IsEmpty());
   EXPECT_THAT(rounded(corner), Contains(HasSubstr("leg from item")));
+}
+
+// Waypoints around a corner of the building, 3 m from its sides. ArduPilot blends legs from their
+// middle, PX4 turns within the acceptance radius.
+TEST_P(MissionInterpreter, VerifiesChainsOfCornersWithoutStop) {
+  const auto around = [&](double step, double radius) {
+    MavlinkMission file = good();
+    file.items.resize(2);
+    const auto add = [&](const Eigen::Vector3d& position, double hold) {
+      MissionItem item{command::waypoint, frame::relative, {hold, radius, 0, 0, 0, 0, 0}, true, 0};
+      item.number = file.items.back().number + 1;
+      move(item, position);
+      file.items.push_back(item);
+    };
+    add({-30, 5, 8}, 1.0);
+    for (double y = 5; y > -13; y -= step) add({-13, y, 8}, 0.0);
+    for (double x = -13; x <= 5; x += step) add({x, -13, 8}, 0.0);
+    add({5, -20, 8}, 1.0);
+    add({-30, -25, 8}, 1.0);
+    MissionItem landing = good().items[find_index(good(), command::land)];
+    landing.number = file.items.back().number + 1;
+    file.items.push_back(landing);
+    FlightFacts facts = sample_facts(GetParam());
+    return find_problems(interpret(file, facts));
+  };
+  const bool is_px4 = GetParam() == AutopilotType::px4;
+  EXPECT_THAT(around(1.0, 0.3), IsEmpty());
+  EXPECT_THAT(around(18.0, 0.3).empty(), is_px4);
+  EXPECT_THAT(around(18.0, 12.0), Contains(HasSubstr("leg from item")));
+}
+
+// A leg that starts beside its line ends beside it, too, but nearer.
+TEST(DepartureAfter, CarriesPartOfTheOffset) {
+  InterpretedSegment leg{{{0, 1, 0}, {0, 0, 0}}, {10, 0, 0}, "item 1", "item 2"};
+  const Departure departure = departure_after(leg, 2.0);
+  EXPECT_LT((departure.start.from - Eigen::Vector3d(8, 0, 0)).norm(), 1e-12);
+  EXPECT_EQ(departure.start.to, leg.to);
+  EXPECT_NEAR(departure.margin, 0.2, 1e-12);
+  leg.margin = 0.5;
+  EXPECT_NEAR(departure_after(leg, 2.0).margin, 0.3, 1e-12);
+  EXPECT_EQ(departure_after(leg, 99.0).start.from, Eigen::Vector3d(0, 0, 0));
 }
 
 TEST(Interpreter, AcceptsDelayInsteadOfHoldForArduPilot) {

@@ -104,14 +104,14 @@ TEST_F(InspectionMissionTest, PlansAVerifiedFlightAroundAMesh) {
 
 TEST_F(InspectionMissionTest, WritesAFlightThatItsEvaluationConfirms) {
   const config::MissionSetup setup = read(block_yaml);
-  const inspection::InspectionMission mission = plan(setup);
+  inspection::InspectionMission mission = plan(setup);
+  const inspection::InspectionSpace space(setup);
   geometry::OutputFolder folder(folder_.path() / "results");
-  stage_inspection_mission(setup, mission, folder);
+  stage_inspection_mission(setup, space, mission, folder);
   folder.commit();
 
   const auto flight = inspection::read_flight_csv(folder.path() / inspection::flight_name);
   ASSERT_EQ(flight.size(), mission.plan.samples.size());
-  const inspection::InspectionSpace space(setup);
   const auto evaluation = evaluate_inspection(setup, space, flight);
   EXPECT_TRUE(evaluation.keeps_clearance());
   EXPECT_TRUE(evaluation.flight.keeps_limits());
@@ -134,10 +134,9 @@ TEST_F(InspectionMissionTest, WritesAFlightThatItsEvaluationConfirms) {
       nlohmann::json::parse(geometry::read_file(folder.path() / package::summary_name));
   EXPECT_EQ(json.at("kind"), "inspection");
   EXPECT_EQ(json.at("inspection").at("duration_s"), mission.plan.evaluation.duration);
-  EXPECT_TRUE(json.at("inspection").at("formats_not_written").contains("kmz"));
+  EXPECT_TRUE(json.at("inspection").at("formats_not_written").contains("plan"));
   EXPECT_THAT(thrown_message([&] { package::read_package(folder.path(), {}); }),
-              HasSubstr("is an inspection: a continuous flight, which route files with waypoints "
-                        "cannot express; use inspection.csv"));
+              HasSubstr("is an inspection, whose route files `skycap plan` writes"));
 }
 
 TEST_F(InspectionMissionTest, PlansAroundAPointCloud) {

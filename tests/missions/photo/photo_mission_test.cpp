@@ -23,8 +23,8 @@
 #include "missions/package/package.h"
 #include "missions/photo/photo_results.h"
 #include "missions/photo/surface_map.h"
-#include "missions/photo/takeoff_point.h"
 #include "missions/report/photo_page.h"
+#include "missions/wizard/takeoff_point.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skycap::missions {
@@ -245,14 +245,14 @@ TEST_F(PhotoMissionTest, ChoosesATakeoffPointInsideTheGeofence) {
   const char* fence = "site: {geofence: [[-120, -40], [40, -40], [40, 40], [-120, 40]], ";
   const config::MissionSetup setup = read(with(mission_yaml, "site: {", fence));
   const std::vector<geometry::View> views{{{20, 0, 4}, {-1, 0, 0}}, {{-20, 0, 4}, {1, 0, 0}}};
-  const Eigen::Vector3d pad = photo::choose_takeoff(setup.flight(), views);
+  const Eigen::Vector3d pad = wizard::choose_takeoff(setup.flight(), views);
   EXPECT_LT(pad.x(), -74.0);
   EXPECT_GT(pad.x(), -120.0 + setup.flight().clearance);
   EXPECT_LT(std::abs(pad.y()), 40.0 - setup.flight().clearance);
   // The mission's own pad has priority.
   const config::MissionSetup own =
       read(with(mission_yaml, "clearance: 2}", "clearance: 2, takeoff: [30, 1, 0]}"));
-  EXPECT_EQ(photo::choose_takeoff(own.flight(), views), Eigen::Vector3d(30, 1, 0));
+  EXPECT_EQ(wizard::choose_takeoff(own.flight(), views), Eigen::Vector3d(30, 1, 0));
 }
 
 TEST_F(PhotoMissionTest, RejectsATargetOutsideTheGeofenceWithItsOffset) {

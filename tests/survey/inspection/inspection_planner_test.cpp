@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "geometry/angle.h"
@@ -199,6 +200,51 @@ TEST(PlanInspection, RejectsImpossibleClearancesWithOneLine) {
   EXPECT_EQ(error_of(options, site),
             "no position around the structure keeps the clearance within the height and airspace "
             "limits; lower the clearance or check the limits");
+}
+
+TEST(PlanInspection, RejectsImpossibleLimitsAndSizesWithOneLine) {
+  const auto with = [](double MotionLimits::*limit, double value) {
+    InspectionOptions options = quick_options();
+    options.moves = 200;
+    options.candidates = 100;
+    options.limits.*limit = value;
+    return error_of(options, cube_site());
+  };
+  const std::string too_slow =
+      "the limits of motion allow no flight around the structure in a day; raise the limits of "
+      "speed, acceleration, jerk or yaw";
+  EXPECT_EQ(with(&MotionLimits::speed, 1e-6), too_slow);
+  EXPECT_EQ(with(&MotionLimits::acceleration, 1e-9), too_slow);
+  EXPECT_EQ(with(&MotionLimits::jerk, 1e-12), too_slow);
+  EXPECT_EQ(with(&MotionLimits::yaw_rate, 1e-9), too_slow);
+  EXPECT_EQ(with(&MotionLimits::yaw_acceleration, 0.0), "yaw_acceleration must be positive");
+
+  InspectionSite site = cube_site();
+  site.points.push_back({0.0F, 5e6F, 1.0F});  // an outlier
+  EXPECT_THAT(error_of(quick_options(), site),
+              testing::StartsWith("the structure with the range around it spans 24 x 5e+06 x "));
+  InspectionOptions options = quick_options();
+  options.camera.range = 900.0;
+  EXPECT_THAT(error_of(options, cube_site()), testing::HasSubstr("which is too large; lower the"));
+}
+
+TEST(PlanInspection, KeepsTheDeviationOfTheFlownCurveInAddition) {
+  InspectionOptions options = quick_options();
+  options.moves = 2000;
+  options.flown_deviation = 0.4;
+  const InspectionPlan plan = plan_inspection(options, cube_site(), {});
+  EXPECT_GE(nearest_by_trying(plan.samples, cube_site().points), 3.4);
+}
+
+// Points behind the front are in the image, but hidden in their pixels by the nearer points.
+TEST(PlanInspection, SeesAllPointsByPixelsIfRequired) {
+  InspectionOptions options = quick_options();
+  options.goal.shares = {1.0, 0.0, 0.9};
+  options.camera.width = 160;  // large pixels, so that nearer points often hide others
+  options.camera.height = 120;
+  const InspectionPlan plan = plan_inspection(options, cube_site(), {});
+  EXPECT_TRUE(!plan.meets_goal || plan.evaluation.seen[0] == plan.attainable[0]);
+  EXPECT_GE(plan.evaluation.seen[0] + 3, plan.attainable[0]);
 }
 
 TEST(PlanInspection, StopsOnRequest) {
