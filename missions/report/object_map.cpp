@@ -147,7 +147,7 @@ std::string object_map(const std::string& title, const std::vector<site_data::Ob
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width\"><meta http-equiv=\"Content-Security-Policy\" "
-      "content=\"default-src 'none'; script-src '{}'; style-src '{}'\"><title>{}</title>"
+      "content=\"default-src 'none'; script-src {}; style-src {}\"><title>{}</title>"
       "<style>{}</style></head>\n<body><header><h1>{}: {} objects. Click the object to survey. "
       "Zoom with the mouse wheel; drag to move the map</h1><code id=\"command\">{}</code><span "
       "id=\"about\"></span>"

@@ -12,7 +12,7 @@ studio.steps.results = {
     this.report.hidden = true;
     this.pages = element("div", { class: "actions" });
     this.rows = element("tbody");
-    this.format = select(formats);
+    this.format = select(formats, { id: "format" });
     this.output = make_output("Output of skycap export");
     section.append(element("h2", {}, "Results"), element("div", { class: "fields" }, field("Results", this.folder)),
       this.pages, this.report, element("h3", {}, "Export for another vehicle or program"),
