@@ -406,6 +406,7 @@ int parse_and_run(const std::vector<std::string>& arguments, Console console) {
     add_model(app, console, action);
     add_report(app, console, action);
     add_view(app, console, action);
+    add_studio(app, console, action);
     add_presets(app, console, action);
     add_completion(app, console, action);
     const auto known = app.get_subcommands({});

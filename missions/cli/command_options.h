@@ -50,6 +50,7 @@ void add_model(CLI::App& app, const Console& console, Action& action);
 void add_export(CLI::App& app, const Console& console, Action& action);
 void add_init(CLI::App& app, const Console& console, Action& action);
 void add_presets(CLI::App& app, const Console& console, Action& action);
+void add_studio(CLI::App& app, const Console& console, Action& action);
 
 /// Returns the input files that may contain mission keys.
 template <class Options>

@@ -23,6 +23,7 @@ h1{font-size:16px;margin:0 0 6px}
 svg{display:block;width:100vw;height:calc(100vh - 110px);background:#fafafa;touch-action:none}
 path{fill:#8a6d4f;stroke:none;cursor:pointer}
 path:hover{fill:#c46a1b}
+path:focus{outline:none;stroke:#111;stroke-width:3px;vector-effect:non-scaling-stroke}
 path.chosen{fill:#1b6fc4}
 )";
 
@@ -31,12 +32,21 @@ constexpr const char* script =
 const svg = document.querySelector("svg"), shown = document.getElementById("command");
 const about = document.getElementById("about");
 let chosen = null;
+// In skycap studio, the page is in a frame and the surrounding page uses the selection.
+const tell = (message) => { if (parent !== window) parent.postMessage(message, "*"); };
 for (const object of map.objects) {
   const path = document.createElementNS(svg.namespaceURI, "path");
   path.setAttribute("d", object.outline);
   const title = document.createElementNS(svg.namespaceURI, "title");
   title.textContent = object.id + " (" + object.height + " m high)";
   path.append(title);
+  path.setAttribute("tabindex", "0");
+  path.setAttribute("role", "button");
+  path.addEventListener("keydown", (event) => {
+    if (event.key !== "Enter" && event.key !== " ") return;
+    event.preventDefault();
+    path.dispatchEvent(new MouseEvent("click"));
+  });
   path.addEventListener("click", () => {
     if (chosen) chosen.classList.remove("chosen");
     chosen = path;
@@ -44,9 +54,11 @@ for (const object of map.objects) {
     shown.textContent = map.command + " --id " + object.quoted;
     about.textContent = object.id + ", " + object.height + " m high" +
         object.attributes.map((each) => ", " + each).join("");
+    tell({object: object.id});
   });
   svg.append(path);
 }
+tell({objects: map.objects.map((object) => object.id)});
 const [x, y, width, height] = map.view;
 let view = {x, y, width, height};
 const show = () => svg.setAttribute("viewBox", [view.x, view.y, view.width, view.height].join(" "));
@@ -135,7 +147,7 @@ std::string object_map(const std::string& title, const std::vector<site_data::Ob
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width\"><meta http-equiv=\"Content-Security-Policy\" "
-      "content=\"default-src 'none'; script-src '{}'; style-src '{}'\"><title>{}</title>"
+      "content=\"default-src 'none'; script-src {}; style-src {}\"><title>{}</title>"
       "<style>{}</style></head>\n<body><header><h1>{}: {} objects. Click the object to survey. "
       "Zoom with the mouse wheel; drag to move the map</h1><code id=\"command\">{}</code><span "
       "id=\"about\"></span>"

@@ -1,0 +1,19 @@
+/// Edits single keys in the text of a mission file. Comments and layout are preserved.
+#pragma once
+
+#include <map>
+#include <string>
+
+namespace skycap::missions::studio {
+
+/// Returns the values of all keys of a mission text in the notation of a mission file, by path,
+/// such as "flight.clearance": "2.5". Lists of maps are omitted. Throws Error{bad_config}, prefixed
+/// with `name` and the line, if the text is not YAML.
+std::map<std::string, std::string> list_values(const std::string& text, const std::string& name);
+
+/// Returns the text with a key set to a value in YAML notation; an empty value removes the key.
+/// Throws Error{bad_config} if the value is not one YAML value, or if the key is written so that
+/// it cannot be replaced without changing others. The text must then be edited directly.
+std::string with_key(const std::string& text, const std::string& key, const std::string& value);
+
+}  // namespace skycap::missions::studio

@@ -1,0 +1,185 @@
+// Step 3: the mission file, as a form and as text.
+
+/// Keys that people set first. The others follow by section.
+const first_keys = ["name", "flight.vehicle", "flight.takeoff", "flight.clearance", "sensor.photo_camera", "sensor.preset",
+  "sensor.lidar", "photo.gsd", "limits.max_views", "limits.max_minutes", "site.max_height", "flight.reserve"];
+
+/// Returns [path, schema] of all keys of a schema that hold one value.
+function keys_of(schema, prefix = "") {
+  return Object.entries(schema.properties || {}).flatMap(([name, one]) =>
+    one.properties ? keys_of(one, prefix + name + ".") : [[prefix + name, one]]);
+}
+
+function limits_text(schema) {
+  const parts = [];
+  if (schema.exclusiveMinimum !== undefined) parts.push("above " + schema.exclusiveMinimum);
+  if (schema.minimum !== undefined) parts.push("from " + schema.minimum);
+  if (schema.maximum !== undefined && schema.maximum < 1e9) parts.push("to " + schema.maximum);
+  return parts.length ? " (" + parts.join(" ") + ")" : "";
+}
+
+studio.steps.mission = {
+  path: "", text: "", version: "", values: {}, inputs: new Map(),
+  build(section) {
+    this.file = select([]);
+    this.file.addEventListener("change", () => this.open(this.file.value).catch((failure) => say(failure.message)));
+    this.area = element("textarea", { spellcheck: "false", "aria-label": "Mission file", wrap: "off" });
+    this.area.addEventListener("change", () => this.set_text(this.area.value).catch((failure) => say(failure.message)));
+    this.form = element("div");
+    this.problem = element("p", { class: "bad", role: "alert", hidden: true });
+    this.conflict = element("div", { hidden: true, role: "alert" });
+    this.is_saved = element("span", { role: "status" });
+    this.output = make_output("Output of the command");
+    this.picture = frame("3-D view of the mission");
+    this.picture.hidden = true;
+    section.append(element("h2", {}, "Mission"), element("div", { class: "fields" }, field("Mission file", this.file)),
+      element("div", { class: "actions" }, button("Check", () => this.check(), { id: "check" }),
+        button("Save", () => this.save(), { id: "save" }), button("Show in 3-D", () => this.view()),
+        button("Plan", () => this.plan(), { class: "main", id: "plan" }),
+        button("Resume", () => this.plan(true)), button("Simulate the scan", () => this.scan()), this.is_saved),
+      this.problem, this.conflict, this.output.box, this.picture,
+      element("div", { class: "columns" }, this.form, this.area));
+    addEventListener("focus", () => this.compare_with_disk().catch(() => {}));
+    addEventListener("beforeunload", (event) => { if (this.is_changed()) event.preventDefault(); });
+  },
+  refresh() {
+    fill(this.file, files_of("mission").map((file) => file.path), "choose a mission");
+    if (this.path) this.file.value = this.path;
+  },
+  is_changed() { return this.path !== "" && this.text !== this.saved; },
+  async open(path) {
+    if (!path) return;
+    if (!this.schema) {
+      this.schema = await request("schema");
+      this.build_form();
+    }
+    this.show(await request("mission?path=" + encodeURIComponent(path)));
+    this.file.value = path;
+  },
+  show(mission) {
+    Object.assign(this, { path: mission.path, text: mission.text, saved: mission.text, version: mission.version });
+    this.conflict.hidden = true;
+    this.show_text(mission);
+  },
+  show_text(mission) {
+    this.values = mission.values || this.values;
+    this.problem.textContent = mission.error || "";
+    this.problem.hidden = !mission.error;
+    this.area.value = this.text;
+    for (const [key, input] of this.inputs) if (input !== document.activeElement) input.value = this.values[key] || "";
+    this.is_saved.textContent = this.is_changed() ? "changed, not saved" : "saved";
+  },
+  /// Reads a text that was edited: the values of the form follow it.
+  async set_text(text) {
+    this.text = text;
+    try {
+      this.show_text(await request("edit", { text, key: "" }));
+    } catch (failure) {
+      this.show_text({ error: failure.message });
+    }
+  },
+  async set(key, value) {
+    const answer = await request("edit", { text: this.text, key, value });
+    this.text = answer.text;
+    this.show_text(answer);
+  },
+  make_input(key, schema) {
+    const words = schema.type === "boolean" ? ["true", "false"] : schema.enum;
+    const input = words ? select([["", "default"], ...words]) : text_input({ "data-key": key });
+    input.dataset.key = key;
+    input.addEventListener("change", async () => {
+      try {
+        await this.set(key, input.value.trim());
+        input.removeAttribute("aria-invalid");
+        say("");
+      } catch (failure) {
+        input.setAttribute("aria-invalid", "true");
+        say(failure.message);
+      }
+    });
+    return input;
+  },
+  build_form() {
+    const all = keys_of(this.schema), schemas = new Map(all);
+    const add = (box, key) => {
+      const schema = schemas.get(key), input = this.make_input(key, schema);
+      this.inputs.set(key, input);
+      box.append(...field(key, input, (schema.description || "") + limits_text(schema)));
+    };
+    const first = element("div", { class: "fields" });
+    first_keys.filter((key) => schemas.has(key)).forEach((key) => add(first, key));
+    this.form.append(element("h3", {}, "Main keys"), first, element("h3", {}, "Other keys"));
+    const sections = [...new Set(all.map(([key]) => key.split(".")[0]))];
+    for (const name of sections) {
+      const keys = all.map(([key]) => key).filter((key) => key.split(".")[0] === name && !first_keys.includes(key));
+      if (keys.length === 0) continue;
+      const box = element("div", { class: "fields" }), details = element("details", {}, element("summary", {}, name), box);
+      keys.forEach((key) => add(box, key));
+      this.form.append(details);
+    }
+  },
+  require_mission() {
+    if (!this.path) throw new Error("No mission is open. Choose a mission file, or create one in the step Site.");
+  },
+  async check() {
+    this.require_mission();
+    return run_command("check", { mission: this.path }, this.output.show, this.text);
+  },
+  async save() {
+    this.require_mission();
+    const answer = await request("save", { path: this.path, text: this.text, version: this.version });
+    if (answer.conflict) return this.show_conflict(answer);
+    Object.assign(this, { version: answer.version, saved: this.text });
+    this.conflict.hidden = true;
+    this.show_text({ values: this.values });
+    return true;
+  },
+  /// The file on disk has changed since it was read. Nothing has been written.
+  show_conflict(disk) {
+    this.conflict.replaceChildren(element("p", { class: "bad" }, this.path + " has been changed on disk by another program."),
+      element("pre", { tabindex: "0", "aria-label": "File on disk" }, disk.text || "(the file does not exist any more)"),
+      element("div", { class: "actions" }, button("Load the file on disk", () => this.show(disk)),
+        button("Keep this text and replace the file", () => { this.version = disk.version; return this.save(); })));
+    this.conflict.hidden = false;
+    return false;
+  },
+  async compare_with_disk() {
+    if (!this.path) return;
+    const disk = await request("mission?path=" + encodeURIComponent(this.path));
+    if (disk.version === this.version) return;
+    if (this.is_changed()) this.show_conflict(disk);
+    else this.show(disk);
+  },
+  async save_if_changed() {
+    this.require_mission();
+    if (!this.is_changed()) return;
+    if (!await this.save()) throw new Error("The mission was not saved. Resolve the conflict first.");
+  },
+  async view() {
+    await this.save_if_changed();
+    const page = this.path.replace(/\.ya?ml$/, ".html");
+    const job = await run_command("view", { what: this.path, "--out": page }, this.output.show);
+    if (job.exit_code === 0) show_in(this.picture, page);
+  },
+  results_folder() { return "results/" + stem_of(this.path); },
+  async plan(resumes) {
+    await this.save_if_changed();
+    const folder = this.results_folder();
+    const job = await run_command("plan", { mission: this.path, "--out": folder, "--resume": !!resumes }, this.output.show);
+    await refresh_files();
+    if (job.exit_code !== 2 && files_of("package").some((file) => file.path === folder)) {
+      await studio.steps.results.open(folder);
+      if (job.exit_code === 0) go_to("results");
+    }
+  },
+  async scan() {
+    await this.save_if_changed();
+    const folder = this.results_folder() + "_scan";
+    const job = await run_command("scan", { mission: this.path, "--out": folder }, this.output.show);
+    await refresh_files();
+    if (job.exit_code === 0) {
+      await studio.steps.results.open(folder);
+      go_to("results");
+    }
+  },
+};

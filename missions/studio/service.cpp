@@ -1,0 +1,316 @@
+#include "missions/studio/service.h"
+
+#include <array>
+#include <charconv>
+#include <chrono>
+#include <string_view>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "geometry/error.h"
+#include "geometry/io/file.h"
+#include "missions/config/mission_keys.h"
+#include "missions/studio/command_table.h"
+#include "missions/studio/mission_edit.h"
+#include "missions/studio/page_parts.h"
+#include "missions/version.h"
+
+namespace skycap::missions::studio {
+namespace {
+
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+constexpr int max_streams = 16;  ///< open event streams; each occupies a thread
+constexpr std::chrono::seconds max_stream_time(60);  ///< the browser then reconnects
+
+// The page loads nothing but its own parts, and no other page can show it in a frame.
+constexpr const char* page_policy =
+    "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; frame-src "
+    "'self'; img-src data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+// Files of the folder may come from anywhere. Their scripts run without access to the studio.
+constexpr const char* file_policy =
+    "sandbox allow-scripts allow-downloads allow-modals; connect-src 'none'; form-action 'none'; "
+    "frame-ancestors 'self'";
+
+HttpAnswer with_headers(HttpAnswer answer, const char* policy) {
+  answer.headers.insert(answer.headers.end(), {{"Content-Security-Policy", policy},
+                                               {"X-Content-Type-Options", "nosniff"},
+                                               {"Referrer-Policy", "no-referrer"},
+                                               {"Cache-Control", "no-store"},
+                                               {"Cross-Origin-Resource-Policy", "same-origin"}});
+  return answer;
+}
+
+/// Bytes that are not UTF-8 are replaced, because file names and outputs may contain any.
+HttpAnswer json_answer(const Json& json, int status = 200) {
+  return {.status = status,
+          .body = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)};
+}
+
+HttpAnswer error_answer(int status, const std::string& message) {
+  return json_answer({{"error", message}}, status);
+}
+
+HttpAnswer not_found() { return error_answer(404, "not found"); }
+
+Json to_json(const std::vector<ListedFile>& files) {
+  Json list = Json::array();
+  for (const ListedFile& file : files)
+    list.push_back({{"path", file.path}, {"kind", file.kind}, {"bytes", file.bytes}});
+  return list;
+}
+
+Json to_json(const JobState& state) {
+  Json json{{"id", state.id},
+            {"title", state.title},
+            {"running", state.is_running},
+            {"seconds", state.seconds}};
+  json["exit_code"] = state.exit_code ? Json(*state.exit_code) : Json();
+  if (!state.lines.empty()) json["from"] = state.first_line, json["lines"] = state.lines;
+  return json;
+}
+
+Json mission_json(const VersionedText& mission, const std::string& name) {
+  Json json{{"path", name}, {"text", mission.text}, {"version", mission.version}};
+  try {
+    json["values"] = list_values(mission.text, name);
+  } catch (const Error& error) {
+    json["error"] = error.what();
+  }
+  return json;
+}
+
+std::string find_query(const HttpRequest& request, const std::string& name) {
+  const auto found = request.query.find(name);
+  return found == request.query.end() ? "" : found->second;
+}
+
+std::optional<int> to_number(std::string_view text) {
+  int number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(number)
+                                                                  : std::nullopt;
+}
+
+std::string media_type(const fs::path& file) {
+  constexpr std::array<std::pair<std::string_view, const char*>, 10> types{
+      {{".html", "text/html; charset=utf-8"},
+       {".json", "application/json"},
+       {".txt", "text/plain; charset=utf-8"},
+       {".md", "text/plain; charset=utf-8"},
+       {".yaml", "text/plain; charset=utf-8"},
+       {".csv", "text/plain; charset=utf-8"},
+       {".png", "image/png"},
+       {".jpg", "image/jpeg"},
+       {".geojson", "application/json"},
+       {".kmz", "application/vnd.google-earth.kmz"}}};
+  const std::string extension = file.extension().string();
+  for (const auto& [name, type] : types) {
+    if (name == extension) return type;
+  }
+  return "application/octet-stream";
+}
+
+/// Returns a file name for a header: quotes, backslashes and other bytes are replaced.
+std::string header_name(const fs::path& file) {
+  std::string name = file.filename().string();
+  for (char& c : name) {
+    if (c < ' ' || c > '~' || c == '"' || c == '\\') c = '_';
+  }
+  return name;
+}
+
+/// Text field of a request. Throws nlohmann::json::exception if it is missing.
+std::string text_of(const Json& json, const char* name) {
+  return json.at(name).get<std::string>();
+}
+
+OptionValues read_options(const Json& json) {
+  OptionValues values;
+  for (const auto& [name, value] : json.items()) {
+    std::vector<std::string>& list = values[name];
+    if (value.is_array()) {
+      for (const Json& item : value) list.push_back(item.get<std::string>());
+    } else if (value.is_boolean()) {
+      if (value.get<bool>()) list.emplace_back();
+    } else {
+      list.push_back(value.get<std::string>());
+    }
+  }
+  return values;
+}
+
+}  // namespace
+
+Service::Service(WorkFolder folder, std::string opened)
+    : folder_(std::move(folder)), opened_(std::move(opened)), guard_(make_token(), make_token()) {}
+
+std::optional<HttpAnswer> Service::reject(const HttpRequest& head) const {
+  std::optional<HttpAnswer> rejection = guard_.reject(head);
+  if (rejection) *rejection = with_headers(std::move(*rejection), page_policy);
+  return rejection;
+}
+
+HttpAnswer Service::answer(const HttpRequest& request) {
+  const std::size_t end = request.path.find('/', 1);
+  const std::string path = end == std::string::npos ? "" : request.path.substr(end);
+  const std::optional<Realm> realm = guard_.find_realm(request.path);
+  try {
+    if (!realm) return not_found();  // rejected before
+    if (*realm == Realm::files) return with_headers(answer_file(path, request), file_policy);
+    return with_headers(answer_page(path, request), page_policy);
+  } catch (const Error& error) {
+    return with_headers(error_answer(400, error.what()), page_policy);
+  } catch (const nlohmann::json::exception&) {
+    return with_headers(error_answer(400, "the request is not valid JSON for this function"),
+                        page_policy);
+  } catch (const std::exception& error) {
+    return with_headers(error_answer(500, error.what()), page_policy);
+  }
+}
+
+HttpAnswer Service::answer_page(const std::string& path, const HttpRequest& request) {
+  if (path.empty()) return {.status = 303, .headers = {{"Location", request.path + "/"}}};
+  if (path == "/") return {.type = "text/html; charset=utf-8", .body = std::string(page_html())};
+  if (path == "/studio.css") return {.type = "text/css", .body = std::string(page_style())};
+  if (path == "/studio.js")
+    return {.type = "text/javascript; charset=utf-8", .body = std::string(page_script())};
+  return request.method == "POST" ? answer_post(path, request) : answer_get(path, request);
+}
+
+HttpAnswer Service::answer_file(const std::string& path, const HttpRequest& request) const {
+  const fs::path file = folder_.resolve(path.empty() ? "" : path.substr(1));
+  std::error_code failure;
+  if (!fs::is_regular_file(file, failure)) return not_found();
+  HttpAnswer answer{.type = media_type(file), .file = file};
+  if (request.query.contains("download")) {
+    answer.headers.emplace_back("Content-Disposition",
+                                "attachment; filename=\"" + header_name(file) + "\"");
+  }
+  return answer;
+}
+
+HttpAnswer Service::answer_get(const std::string& path, const HttpRequest& request) {
+  if (path == "/api/state") {
+    Json jobs = Json::array();
+    for (const JobState& state : jobs_.states()) jobs.push_back(to_json(state));
+    return json_answer({{"version", version},
+                        {"folder", folder_.path().string()},
+                        {"opened", opened_},
+                        {"files", guard_.file_token()},
+                        {"jobs", jobs}});
+  }
+  if (path == "/api/files") {
+    const Listing listing = folder_.list();
+    return json_answer({{"files", to_json(listing.files)}, {"complete", listing.is_complete}});
+  }
+  if (path == "/api/package")
+    return json_answer({{"files", to_json(folder_.list_package(find_query(request, "path")))}});
+  if (path == "/api/schema") return {.body = config::mission_json_schema()};
+  if (path == "/api/mission") {
+    const std::string name = find_query(request, "path");
+    return json_answer(mission_json(folder_.read(name), name));
+  }
+  constexpr std::string_view prefix = "/api/jobs/";
+  if (!path.starts_with(prefix)) return not_found();
+  const std::string rest = path.substr(prefix.size());
+  const bool is_stream = rest.ends_with("/events");
+  const std::optional<int> id = to_number(rest.substr(0, rest.find('/')));
+  const std::shared_ptr<Job> job = id ? jobs_.find(*id) : nullptr;
+  if (!job) return not_found();
+  if (is_stream) return stream_job(job);
+  const std::optional<int> first = to_number(find_query(request, "from"));
+  return json_answer(to_json(job->state(static_cast<std::size_t>(std::max(0, first.value_or(0))))));
+}
+
+HttpAnswer Service::stream_job(const std::shared_ptr<Job>& job) {
+  const std::shared_ptr<void> count(nullptr, [this](void*) { --streams_; });
+  if (++streams_ > max_streams) return error_answer(503, "too many pages are open; close some");
+  struct Progress {
+    std::size_t next = 0;
+    bool is_over = false;
+    std::chrono::steady_clock::time_point end = std::chrono::steady_clock::now() + max_stream_time;
+  };
+  const auto progress = std::make_shared<Progress>();
+  return {.type = "text/event-stream",
+          .next_piece = [this, job, progress, count]() -> std::optional<std::string> {
+            if (progress->is_over || is_stopped_ ||
+                std::chrono::steady_clock::now() > progress->end) {
+              return std::nullopt;
+            }
+            job->wait_for_line(progress->next, std::chrono::seconds(1));
+            const JobState state = job->state(progress->next);
+            progress->next = state.first_line + state.lines.size();
+            progress->is_over = !state.is_running;
+            return "data: " +
+                   to_json(state).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) +
+                   "\n\n";
+          }};
+}
+
+HttpAnswer Service::answer_post(const std::string& path, const HttpRequest& request) {
+  if (path == "/api/jobs") return start_job(request.body);
+  if (path.starts_with("/api/jobs/") && path.ends_with("/cancel")) {
+    const std::string rest = path.substr(std::string_view("/api/jobs/").size());
+    const std::optional<int> id = to_number(rest.substr(0, rest.find('/')));
+    const std::shared_ptr<Job> job = id ? jobs_.find(*id) : nullptr;
+    if (!job) return not_found();
+    job->cancel();
+    return json_answer(to_json(job->state(0)));
+  }
+  const Json json = Json::parse(request.body);
+  if (path == "/api/edit") {
+    std::string text = text_of(json, "text");
+    const std::string key = text_of(json, "key");
+    if (!key.empty()) text = with_key(text, key, text_of(json, "value"));
+    return json_answer({{"text", text}, {"values", list_values(text, "mission")}});
+  }
+  if (path == "/api/save") {
+    const std::string name = text_of(json, "path"), text = text_of(json, "text");
+    try {
+      return json_answer({{"version", folder_.save(name, text, text_of(json, "version"))}});
+    } catch (const SaveConflict& conflict) {
+      Json answer = mission_json(conflict.on_disk, name);
+      answer["conflict"] = true;
+      return json_answer(answer, 409);
+    }
+  }
+  return not_found();
+}
+
+HttpAnswer Service::start_job(const std::string& body) {
+  const Json json = Json::parse(body);
+  const std::string command = text_of(json, "command");
+  OptionValues options = read_options(json.value("options", Json::object()));
+  JobRequest request{.folder = folder_.path()};
+  request.title = shell_text(make_arguments(command, options, folder_));
+  if (json.contains("draft")) {  // a mission text that has not been saved
+    const std::string mission = options["mission"].at(0);
+    const fs::path file = folder_.resolve(mission);
+    // Next to the mission, because its file names are relative.
+    const std::string name =
+        "." + file.stem().string() + ".draft" + std::to_string(++drafts_) + ".yaml";
+    const fs::path draft = file.parent_path() / name;
+    geometry::write_file(draft, text_of(json, "draft"));
+    request.at_end = [draft] {
+      std::error_code ignored;
+      fs::remove(draft, ignored);
+    };
+    request.arguments = {command, draft.lexically_relative(folder_.path()).string()};
+    request.hidden_text = request.arguments[1];
+    request.shown_text = mission;
+  } else {
+    request.arguments = make_arguments(command, options, folder_);
+  }
+  request.arguments.insert(request.arguments.end(), {"--progress", "plain"});
+  return json_answer(to_json(jobs_.start(std::move(request))->state(0)), 201);
+}
+
+void Service::stop() {
+  is_stopped_ = true;
+  jobs_.cancel_all();
+}
+
+}  // namespace skycap::missions::studio
