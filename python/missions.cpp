@@ -140,13 +140,12 @@ void bind_missions(py::module_& module) {
       .def_property_readonly("coverage_distance", &Mission::coverage_distance,
                              "Coverage distance: a surface sample within this distance of a "
                              "measurement is covered,\nin metres.")
-      .def(
-          "model", &Mission::model, py::call_guard<py::gil_scoped_release>(),
-          "model($self)\n"
-          "--\n"
-          "\n"
-          "The placed model of the scene, without ground: the ground truth, which planners do not\n"
-          "use.")
+      .def("model", &Mission::model, py::call_guard<py::gil_scoped_release>(),
+           "model($self)\n"
+           "--\n"
+           "\n"
+           "Scene model in the world frame, without the ground plane. It is the ground truth;\n"
+           "planners do not use it.")
       .def("__repr__",
            [](const Mission& mission) { return "<skycap.Mission " + mission.name() + ">"; });
   bind_simulation(module);

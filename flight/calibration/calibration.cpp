@@ -163,8 +163,8 @@ std::vector<std::string> make_warnings(const PowerFit& fit, const Vehicle& vehic
   for (const std::string& name : fit.at_bound) {
     if (name == "rotors") {
       warnings.push_back(
-          "rotor efficiency is at its limit of 1: " + to_string(vehicle) +
-          " may differ from the logged vehicle; set --mass and check the current sensor");
+          "rotor efficiency is at its limit of 1; the assumed vehicle (" + to_string(vehicle) +
+          ") may differ from the logged one; set --mass and check the current sensor");
     } else {
       warnings.push_back(name +
                          " is at its limit of 0, because the log contains too little data to "

@@ -29,8 +29,9 @@ void require_points(std::span<const Eigen::Vector3f> points) {
                                                  static_cast<Eigen::Index>(3 * points.size()));
   if (numbers.abs().maxCoeff<Eigen::PropagateNaN>() <= farthest_point) return;
   const auto bad = std::ranges::find_if_not(points, is_usable) - points.begin();
-  reject("has point " + std::to_string(bad) + ", which is not finite or is more than " +
-         std::to_string(farthest) + " m from the origin; use a local frame");
+  reject("contains an invalid point (number " + std::to_string(bad) +
+         "): it is not finite or is more than " + std::to_string(farthest) +
+         " m from the origin; use a local frame");
 }
 
 }  // namespace

@@ -198,7 +198,7 @@ int plan_photos(const PlanOptions& options, const config::MissionSetup& setup,
                 geometry::OutputFolder& folder, const Console& console) {
   if (options.trials > 0) {
     throw Error(ErrorKind::bad_usage,
-                "--trials requires a sensor that measures depth; plan photos without it");
+                "--trials requires a depth sensor; remove --trials for a photo mission");
   }
   ProgressLine progress(console, options.is_quiet);
   const auto report = [&](const std::string& what) { progress.show(setup.name + ": " + what); };

@@ -94,7 +94,8 @@ std::vector<Key> density_keys() {
       integer_key("planner.visibility_update_limit", "views", between(1, 1e6),
                   see(&See::visibility_update_limit),
                   "tau: number of views nearest to the sensor that are updated after a scan."),
-      otherwise("ceil(4/3 pi r^3 rho); in preset building 1.09 (r/epsilon)^2, rounded, if larger",
+      otherwise("ceil(4/3 pi r^3 rho); with planner.preset: building, 1.09 (r/epsilon)^2 (rounded) "
+                "if that is larger",
                 integer_key("planner.core_threshold", "points", between(1, 1e6),
                             see(&See::core_threshold),
                             "k: minimum number of points within r of a core point, including the "

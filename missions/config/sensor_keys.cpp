@@ -17,8 +17,8 @@ Key frame_period_key() {
   Key key = number_key(
       "sensor.frame_period", "s", between(0.05, 3600),
       [](auto& m) -> auto& { return m.sensor.options.frame_period; },
-      "Capture interval of en-route frames (sensor.capture: moving). The camera turns between "
-      "frames and is at rest during the exposure.");
+      "Capture interval of en-route frames (sensor.capture: moving). The camera rotates between "
+      "frames, not during the exposure; the vehicle does not stop.");
   key.fallback = "1 s";
   key.get = [get = key.get](const MissionDocument& mission) -> std::optional<KeyValue> {
     return mission.sensor.options.is_moving() ? get(mission) : std::nullopt;
@@ -45,8 +45,8 @@ Key photo_camera_key() {
                "sensor.photo_camera", [](auto& m) -> auto& { return m.sensor.photo_camera; },
                "Photo camera instead of a depth camera: a preset of survey/photo/presets, or the "
                "path of a camera file (NAME.yaml), relative to the mission file. Photos are "
-               "planned for photogrammetry (section photo) of targets that prior data contains "
-               "(prior with role: target). No other key of the section sensor applies."));
+               "planned for photogrammetry (section photo) of the targets in the prior data (prior "
+               "with role: target). No other key of the section sensor applies."));
 }
 
 }  // namespace

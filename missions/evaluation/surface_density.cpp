@@ -327,7 +327,8 @@ DensityRaster::DensityRaster(const Eigen::AlignedBox2d& box, double cell)
   if (!(cells.minCoeff() >= 1.0) || !(cells.prod() <= max_cells)) {
     throw Error(ErrorKind::bad_config,
                 "the density raster would have " + std::to_string(cells.x()) + " x " +
-                    std::to_string(cells.y()) + " cells; it must have 1 to 100 million");
+                    std::to_string(cells.y()) +
+                    " cells; it must have at least 1 and at most 100 million cells");
   }
   columns_ = static_cast<std::size_t>(cells.x());
   rows_ = static_cast<std::size_t>(cells.y());

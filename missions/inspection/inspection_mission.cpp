@@ -41,19 +41,19 @@ std::vector<std::string> make_warnings(const config::MissionSetup& setup,
       "that the model does not contain."};
   if (!plan.meets_goal) {
     const double attainable = static_cast<double>(plan.attainable[incidence_rule]);
-    warnings.push_back(fmt::format(
-        "the flight sees {:.2f}% of the attainable points, and inspection.share requires {:.2f}% "
-        "by the conservative count of the search; raise inspection.moves or lower "
-        "inspection.share",
-        100.0 * static_cast<double>(plan.evaluation.seen[incidence_rule]) /
-            std::max(attainable, 1.0),
-        100.0 * mission.options.goal.shares[incidence_rule]));
+    warnings.push_back(
+        fmt::format("the flight sees {:.2f}% of the attainable points, but the planner's "
+                    "conservative count is below the {:.2f}% that inspection.share requires; raise "
+                    "inspection.moves or lower inspection.share",
+                    100.0 * static_cast<double>(plan.evaluation.seen[incidence_rule]) /
+                        std::max(attainable, 1.0),
+                    100.0 * mission.options.goal.shares[incidence_rule]));
   }
   if (!mission.flight) {
     warnings.push_back(
         "no mission with waypoints is written: " + mission.flight_failure +
-        ". Fly the setpoints with an offboard controller, and plan the flights from the take-off "
-        "point to the start and from the end back");
+        ". Fly the setpoints with an offboard controller, and plan the legs from the take-off "
+        "point to the start of the route and from its end back to the take-off point");
     return warnings;
   }
   const flight::Route& route = mission.flight->mission.route;

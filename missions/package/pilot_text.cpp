@@ -265,7 +265,7 @@ std::string pilot_text(const flight::FlightOptions& options, const SurveyMission
                        const std::vector<std::string>& more) {
   std::string text;
   for (const PilotSteps& part : pilot_steps(options, flight)) {
-    text += "To do before the flight, " + part.whom + ":\n";
+    text += "Before the flight (" + part.whom + "):\n";
     for (std::size_t i = 0; i < part.steps.size(); ++i) {
       text += fmt::format("  {}. {}\n", i + 1, part.steps[i]);
     }

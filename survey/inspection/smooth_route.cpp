@@ -193,7 +193,7 @@ Coordinates IntervalCurve::jerk(double time) const {
 std::vector<FlightSample> sample_flight(std::span<const Vertex> vertices,
                                         const Smoothing& smoothing, double interval) {
   if (!(interval > 0.0)) {
-    throw Error(ErrorKind::bad_config, "the interval of the samples must be positive");
+    throw Error(ErrorKind::bad_config, "the sampling interval must be positive");
   }
   std::vector<FlightSample> samples;
   if (vertices.empty()) return samples;

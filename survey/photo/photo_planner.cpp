@@ -328,8 +328,8 @@ class Planner {
     if (is_unknown && graph.is_connected(min_degree) && graph.registered < graph.photos) {
       result_.warnings.push_back(
           std::to_string(graph.photos - graph.registered) + " of " + std::to_string(graph.photos) +
-          " photos overlap too little with two others to be registered without poses; raise "
-          "photo.max_photos or photo.gsd");
+          " photos cannot be registered without poses, because they do not overlap enough with at "
+          "least two other photos; raise photo.max_photos or photo.gsd");
     }
     if (result_.graph.is_connected(is_unknown ? min_degree : 0)) return;
     std::string parts;
@@ -347,9 +347,11 @@ class Planner {
     }
     throw Error(
         ErrorKind::bad_config,
-        "photo.poses: unknown requires photos that register to one another, but " + what +
-            ", or a photo can be registered to fewer than 3 others; raise photo.max_photos or "
-            "photo.gsd, or set photo.poses: known (RTK or PPK)");
+        "photo.poses: unknown requires that all photos can be registered to one another, each to "
+        "at least " +
+            std::to_string(min_degree) + " others; " + what +
+            ", or some photos have too few connections; raise photo.max_photos or photo.gsd, or "
+            "set photo.poses: known (RTK or PPK)");
   }
 
   PhotoFigures evaluated(const std::vector<geometry::View>& views, const Observer& evaluator) {

@@ -44,7 +44,7 @@ std::string find_defect(const mrpt::img::TCamera& camera) {
   const auto is_focal = [](double length) { return std::isfinite(length) && length > 0.0; };
   if (!is_focal(camera.fx()) || !is_focal(camera.fy()) || !std::isfinite(camera.cx()) ||
       !std::isfinite(camera.cy())) {
-    return "missing focal length or image centre";
+    return "missing focal length or principal point";
   }
   if (camera.distortion == DistortionModel::none) return {};
   if (camera.distortion != DistortionModel::plumb_bob) {

@@ -65,7 +65,7 @@ function camera_section(data) {
       ["Ground sampling distance", f("gsd_m", "millimetres")], ["View distance", f("view_distance_m", "metres")],
       ["Maximum exposure time", f("capture.exposure_s", "seconds")],
       ["Minimum time between photos", f("capture.min_interval_s", "seconds")],
-      ["Speed with a motion blur of half a pixel", number(shown(photo.capture.blur_speed_m_s, "metres") + "/s")],
+      ["Speed at which motion blur is half a pixel", number(shown(photo.capture.blur_speed_m_s, "metres") + "/s")],
       ["Storage for JPEG photos (estimate)", f("capture.storage_bytes", "bytes")]]),
     element("p", {}, photo.capture.trigger));
 }

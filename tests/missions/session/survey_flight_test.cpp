@@ -277,7 +277,7 @@ std::string steps_for(const std::string& vehicle, const std::string& format) {
   const auto run = run_skycap({"export", folder / "out", "--format", format, "--set",
                                "flight.vehicle=" + vehicle, "--out", out / "own"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  const std::size_t steps = run.out.find("To do before the flight, " + vehicle + ":\n  1. ");
+  const std::size_t steps = run.out.find("Before the flight (" + vehicle + "):\n  1. ");
   EXPECT_NE(steps, std::string::npos) << run.out;
   return steps == std::string::npos ? "" : run.out.substr(steps);
 }

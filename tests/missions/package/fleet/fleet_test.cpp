@@ -40,7 +40,7 @@ const TestFolder& package() {
     const auto run = run_skycap({"plan", mission, "--out", folder / "out"});
     EXPECT_EQ(run.exit_code, 0) << run.err;
     EXPECT_THAT(run.out, HasSubstr("  fleet     2 vehicles, "));
-    EXPECT_THAT(run.out, HasSubstr("To do before the flight, vehicle 2 (generic_ardupilot):\n"));
+    EXPECT_THAT(run.out, HasSubstr("Before the flight (vehicle 2 (generic_ardupilot)):\n"));
     return true;
   }();
   EXPECT_TRUE(is_made);
