@@ -200,10 +200,8 @@ InspectionFlight plan_inspection_flight(const config::MissionSetup& setup,
       package::plan_flight(flight, space.space(), result.pad, waypoints, {}, stop);
   const flight::Route& route = result.mission.route;
   if (route.sorties.empty()) {
-    throw Error(ErrorKind::bad_geometry,
-                route.unreached.empty()
-                    ? "no waypoint can be reached"
-                    : "no waypoint can be reached: " + route.unreached.front().reason);
+    const std::string reason = route.unreached.empty() ? "" : ": " + route.unreached[0].reason;
+    throw Error(ErrorKind::bad_geometry, "no waypoint can be reached" + reason);
   }
   survey::inspection::EvaluationOptions evaluation;
   evaluation.camera = options.camera;
