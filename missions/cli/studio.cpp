@@ -35,10 +35,10 @@ int studio(const StudioOptions& options, const Console& console) {
   if (!is_folder && !fs::exists(options.what, ignored)) {
     throw Error(ErrorKind::bad_file, options.what.string() + ": does not exist");
   }
-  const fs::path folder = is_folder                         ? options.what
+  const fs::path folder = is_folder                        ? options.what
                           : options.what.has_parent_path() ? options.what.parent_path()
-                                                            : fs::path(".");
-  studio::Service service(studio::WorkFolder(folder),
+                                                           : fs::path(".");
+  studio::Service service(studio::WorkFolder(folder), fs::read_symlink("/proc/self/exe"),
                           is_folder ? "" : options.what.filename().string());
   const std::unique_ptr<studio::HttpServer> server =
       studio::make_http_server(options.port, service);
@@ -74,9 +74,8 @@ void add_studio(CLI::App& app, const Console& console, Action& action) {
   command->add_option("--port", options->port, "Port on 127.0.0.1 (default: 0, any free port)")
       ->check(CLI::Range(0, 65535));
   command->add_flag("!--no-browser", options->opens_browser, "Do not open the browser");
-  command->callback([=, &console, &action] {
-    action = [=, &console] { return studio(*options, console); };
-  });
+  command->callback(
+      [=, &console, &action] { action = [=, &console] { return studio(*options, console); }; });
 }
 
 }  // namespace skycap::missions::cli

@@ -18,7 +18,7 @@ namespace {
 
 using std::chrono::steady_clock;
 
-constexpr std::size_t max_lines = 5000;      ///< kept per job
+constexpr std::size_t max_lines = 5000;        ///< kept per job
 constexpr std::size_t max_line_length = 4000;  ///< [byte]
 constexpr std::size_t max_running = 4, max_kept = 100;
 constexpr std::chrono::seconds time_to_save(5);
@@ -125,7 +125,7 @@ void Job::read_lines(int pipe) {
 }
 
 void Job::run() {
-  const std::string program = std::filesystem::read_symlink("/proc/self/exe").string();
+  const std::string program = request_.program.string();
   std::vector<char*> arguments{const_cast<char*>(program.c_str())};
   for (const std::string& word : request_.arguments)
     arguments.push_back(const_cast<char*>(word.c_str()));
@@ -176,8 +176,8 @@ std::shared_ptr<Job> JobList::start(JobRequest request) {
   std::size_t running = 0;
   for (const auto& job : jobs_) running += job->is_running() ? 1 : 0;
   if (running >= max_running) {
-    throw Error(ErrorKind::bad_usage, std::to_string(running) +
-                                          " commands are running; wait for one or cancel it");
+    throw Error(ErrorKind::bad_usage,
+                std::to_string(running) + " commands are running; wait for one or cancel it");
   }
   if (jobs_.size() >= max_kept) {
     std::erase_if(jobs_, [first = jobs_.front()->id()](const std::shared_ptr<Job>& job) {

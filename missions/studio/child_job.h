@@ -19,6 +19,7 @@
 namespace skycap::missions::studio {
 
 struct JobRequest {
+  std::filesystem::path program;       ///< executable
   std::vector<std::string> arguments;  ///< of the program, without its name
   std::filesystem::path folder;        ///< working folder
   std::string title;                   ///< command as shown on the page

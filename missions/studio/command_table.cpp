@@ -80,7 +80,8 @@ std::string checked_value(const CommandOption& option, const std::string& value,
     return value.starts_with('-') ? "./" + value : value;
   }
   if (value.size() > 1000 || value.find('\0') != std::string::npos) {
-    throw Error(ErrorKind::bad_usage, std::string(option.name) + " must have fewer than 1000 bytes");
+    throw Error(ErrorKind::bad_usage,
+                std::string(option.name) + " must have fewer than 1000 bytes");
   }
   return value;
 }

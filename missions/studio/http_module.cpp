@@ -2,16 +2,18 @@
 // time: cpp-httplib itself limits neither the number of headers nor the total time.
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <fstream>
+#include <memory>
+#include <thread>
 #include <utility>
 
+#include <httplib.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
-
-#include <httplib.h>
 
 #include "missions/studio/http_interface.h"
 
@@ -110,8 +112,7 @@ void send_file(const HttpAnswer& answer, httplib::Response& response) {
   }
   if (size == 0) return response.set_content("", answer.type);
   response.set_content_provider(
-      size, answer.type,
-      [stream](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
+      size, answer.type, [stream](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
         std::array<char, 65536> piece;
         stream->seekg(static_cast<std::streamoff>(offset));
         stream->read(piece.data(), static_cast<std::streamsize>(std::min(length, piece.size())));
@@ -160,19 +161,23 @@ class BoundedServer : public HttpServer, private httplib::Server {
 
   /// Returns whether the port is free.
   bool open(int port) {
-    port_ = port == 0 ? bind_to_any_port("127.0.0.1")
-                      : (bind_to_port("127.0.0.1", port) ? port : -1);
+    port_ =
+        port == 0 ? bind_to_any_port("127.0.0.1") : (bind_to_port("127.0.0.1", port) ? port : -1);
     return port_ > 0;
   }
 
   int port() const override { return port_; }
 
   void run() override {
+    is_entered_ = true;
     if (!is_stopped_) listen_after_bind();
+    is_entered_ = false;
   }
 
+  /// httplib ignores a stop before it listens, so that this waits for it.
   void stop() override {
     is_stopped_ = true;
+    while (is_entered_ && !is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     httplib::Server::stop();
   }
 
@@ -191,7 +196,7 @@ class BoundedServer : public HttpServer, private httplib::Server {
   }
 
   int port_ = -1;
-  std::atomic<bool> is_stopped_ = false;
+  std::atomic<bool> is_entered_ = false, is_stopped_ = false;
 };
 
 }  // namespace

@@ -145,8 +145,8 @@ std::optional<std::size_t> find_key(const std::string& text, const YamlEntry& en
   std::optional<std::size_t> found;
   for (std::size_t at = text.find(entry.key + ":", begin); at < end;
        at = text.find(entry.key + ":", at + 1)) {
-    const bool is_word = at == begin || text[at - 1] == ' ' || text[at - 1] == '{' ||
-                         text[at - 1] == ',';
+    const bool is_word =
+        at == begin || text[at - 1] == ' ' || text[at - 1] == '{' || text[at - 1] == ',';
     if (!is_word) continue;
     if (found) return std::nullopt;
     found = at;
@@ -156,9 +156,9 @@ std::optional<std::size_t> find_key(const std::string& text, const YamlEntry& en
 
 bool is_in_flow(const std::string& text, std::size_t begin, std::size_t at) {
   return std::count(text.begin() + static_cast<std::ptrdiff_t>(begin),
-                    text.begin() + static_cast<std::ptrdiff_t>(at), '{') >
-         std::count(text.begin() + static_cast<std::ptrdiff_t>(begin),
-                    text.begin() + static_cast<std::ptrdiff_t>(at), '}');
+                    text.begin() + static_cast<std::ptrdiff_t>(at),
+                    '{') > std::count(text.begin() + static_cast<std::ptrdiff_t>(begin),
+                                      text.begin() + static_cast<std::ptrdiff_t>(at), '}');
 }
 
 /// Replaces or removes the value of an existing key.
@@ -284,8 +284,9 @@ std::string with_key(const std::string& text, const std::string& key, const std:
     }
   }
   throw Error(ErrorKind::bad_config,
-              "key " + key + " cannot be changed in the form, because of the layout of the file; "
-                             "edit the text");
+              "key " + key +
+                  " cannot be changed in the form, because of the layout of the file; "
+                  "edit the text");
 }
 
 }  // namespace skycap::missions::studio

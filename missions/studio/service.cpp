@@ -22,7 +22,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-constexpr int max_streams = 16;  ///< open event streams; each occupies a thread
+constexpr int max_streams = 16;                      ///< open event streams; each occupies a thread
 constexpr std::chrono::seconds max_stream_time(60);  ///< the browser then reconnects
 
 // The page loads nothing but its own parts, and no other page can show it in a frame.
@@ -123,9 +123,7 @@ std::string header_name(const fs::path& file) {
 }
 
 /// Text field of a request. Throws nlohmann::json::exception if it is missing.
-std::string text_of(const Json& json, const char* name) {
-  return json.at(name).get<std::string>();
-}
+std::string text_of(const Json& json, const char* name) { return json.at(name).get<std::string>(); }
 
 OptionValues read_options(const Json& json) {
   OptionValues values;
@@ -144,8 +142,11 @@ OptionValues read_options(const Json& json) {
 
 }  // namespace
 
-Service::Service(WorkFolder folder, std::string opened)
-    : folder_(std::move(folder)), opened_(std::move(opened)), guard_(make_token(), make_token()) {}
+Service::Service(WorkFolder folder, fs::path program, std::string opened)
+    : folder_(std::move(folder)),
+      program_(std::move(program)),
+      opened_(std::move(opened)),
+      guard_(make_token(), make_token()) {}
 
 std::optional<HttpAnswer> Service::reject(const HttpRequest& head) const {
   std::optional<HttpAnswer> rejection = guard_.reject(head);
@@ -234,20 +235,20 @@ HttpAnswer Service::stream_job(const std::shared_ptr<Job>& job) {
     std::chrono::steady_clock::time_point end = std::chrono::steady_clock::now() + max_stream_time;
   };
   const auto progress = std::make_shared<Progress>();
-  return {.type = "text/event-stream",
-          .next_piece = [this, job, progress, count]() -> std::optional<std::string> {
-            if (progress->is_over || is_stopped_ ||
-                std::chrono::steady_clock::now() > progress->end) {
-              return std::nullopt;
-            }
-            job->wait_for_line(progress->next, std::chrono::seconds(1));
-            const JobState state = job->state(progress->next);
-            progress->next = state.first_line + state.lines.size();
-            progress->is_over = !state.is_running;
-            return "data: " +
-                   to_json(state).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) +
-                   "\n\n";
-          }};
+  return {
+      .type = "text/event-stream",
+      .next_piece = [this, job, progress, count]() -> std::optional<std::string> {
+        if (progress->is_over || is_stopped_ || std::chrono::steady_clock::now() > progress->end) {
+          return std::nullopt;
+        }
+        job->wait_for_line(progress->next, std::chrono::seconds(1));
+        const JobState state = job->state(progress->next);
+        progress->next = state.first_line + state.lines.size();
+        progress->is_over = !state.is_running;
+        return "data: " +
+               to_json(state).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) +
+               "\n\n";
+      }};
 }
 
 HttpAnswer Service::answer_post(const std::string& path, const HttpRequest& request) {
@@ -284,7 +285,7 @@ HttpAnswer Service::start_job(const std::string& body) {
   const Json json = Json::parse(body);
   const std::string command = text_of(json, "command");
   OptionValues options = read_options(json.value("options", Json::object()));
-  JobRequest request{.folder = folder_.path()};
+  JobRequest request{.program = program_, .folder = folder_.path()};
   request.title = shell_text(make_arguments(command, options, folder_));
   if (json.contains("draft")) {  // a mission text that has not been saved
     const std::string mission = options["mission"].at(0);

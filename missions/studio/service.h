@@ -31,8 +31,9 @@ namespace skycap::missions::studio {
 
 class Service : public RequestHandler {
  public:
-  /// `opened` is the file that the page shows first, relative to the folder; may be empty.
-  Service(WorkFolder folder, std::string opened);
+  /// `program` is the executable whose commands the page runs. `opened` is the file that the page
+  /// shows first, relative to the folder; may be empty.
+  Service(WorkFolder folder, std::filesystem::path program, std::string opened);
 
   void set_port(int port) { guard_.set_port(port); }
   const RequestGuard& guard() const { return guard_; }
@@ -53,6 +54,7 @@ class Service : public RequestHandler {
   HttpAnswer stream_job(const std::shared_ptr<Job>& job);
 
   WorkFolder folder_;
+  std::filesystem::path program_;
   std::string opened_;
   RequestGuard guard_;
   JobList jobs_;

@@ -39,8 +39,7 @@ bool is_hidden(const fs::path& file) { return file.filename().string().starts_wi
 
 bool is_package(const fs::path& folder) {
   std::error_code ignored;
-  return fs::exists(folder / "summary.json", ignored) ||
-         fs::exists(folder / "scan.json", ignored);
+  return fs::exists(folder / "summary.json", ignored) || fs::exists(folder / "scan.json", ignored);
 }
 
 bool is_within(const fs::path& path, const fs::path& folder) {
@@ -70,8 +69,8 @@ WorkFolder::WorkFolder(const fs::path& folder) {
 
 fs::path WorkFolder::resolve(const std::string& relative) const {
   const auto fail = [&](const std::string& what) -> Error {
-    return {ErrorKind::bad_usage, "path '" + relative + "' " + what +
-                                      "; name a file in " + folder_.string()};
+    return {ErrorKind::bad_usage,
+            "path '" + relative + "' " + what + "; name a file in " + folder_.string()};
   };
   const bool has_control = std::ranges::any_of(
       relative, [](char c) { return static_cast<unsigned char>(c) < 32 || c == 127; });
