@@ -1,5 +1,6 @@
 #include "sim/sensors/depth_camera.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <set>
@@ -134,6 +135,25 @@ TEST(DepthCamera, AppliesRangeLimitsAlongOpticalAxis) {
   EXPECT_EQ(returns_from_wall_at(4.01), 101U * 67U);
   EXPECT_EQ(returns_from_wall_at(5.99), 101U * 67U);
   EXPECT_EQ(returns_from_wall_at(6.01), 0U);
+}
+
+// The camera touches the ground, so that rays hit it at a distance of zero with either sign. Such
+// returns must be neither counted nor written, otherwise later pixels are out of order.
+TEST(DepthCamera, IgnoresSurfaceThatItTouches) {
+  geometry::Mesh mesh = square({0, 0, 0}, {0, 0, 1}, 40.0);
+  geometry::append(mesh, square({3, 0, 0.6}, {-1, 0, 0}, 1.0));
+  const Scene scene(mesh, 1);
+  const DepthCamera camera(exact_config());
+  for (const double height : {0.0, 1e-5, 1e-6, 1e-7, 1e-9, -1e-9, -1e-7, -1e-6}) {
+    for (const double slope : {0.0, 0.3, -0.3}) {
+      const geometry::View view{{0.1, 0.2, height}, Vector3d(1, 0, slope).normalized()};
+      const Scan scan = camera.scan(scene, view, 0, 1);
+      EXPECT_TRUE(std::ranges::is_sorted(scan.pixels)) << height << ", " << slope;
+      for (const Eigen::Vector3f& point : scan.points) {
+        ASSERT_GT((point.cast<double>() - view.position).norm(), 0.0) << height << ", " << slope;
+      }
+    }
+  }
 }
 
 TEST(DepthCamera, OccludesSurfacesBehindTooNearSurface) {
