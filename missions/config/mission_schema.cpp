@@ -208,7 +208,7 @@ std::string expected_value(const Key& key) {
     case KeyType::pairs:
       return "a map of strings";
     case KeyType::sources:
-      return "a list of maps, each with file, role and further keys";
+      return "a list of YAML mappings, each with file, role and further keys";
     case KeyType::vector:
       break;
   }

@@ -42,7 +42,8 @@ std::vector<Key> photo_keys() {
           integer_key(
               "photo.min_partners", "", between(2, 6), photo(&PhotoSection::min_partners),
               "K: number of stereo partners that at least one photo of each surface point must "
-              "have. A point is satisfied with K + 1 suitable photos. Use 4 for plain walls.")),
+              "have. K + 1 suitable photos of a point meet this requirement. Use 4 for plain "
+              "walls.")),
       angle_key("photo.max_incidence_deg", between(45, 85),
                 rule(&survey::photo::StereoRule::max_incidence),
                 "Maximum angle of incidence of a photo's ray at the surface."),

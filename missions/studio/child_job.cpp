@@ -176,8 +176,9 @@ std::shared_ptr<Job> JobList::start(JobRequest request) {
   std::size_t running = 0;
   for (const auto& job : jobs_) running += job->is_running() ? 1 : 0;
   if (running >= max_running) {
-    throw Error(ErrorKind::bad_usage,
-                std::to_string(running) + " commands are running; wait for one or cancel it");
+    throw Error(
+        ErrorKind::bad_usage,
+        std::to_string(running) + " commands are running; wait for one to finish, or cancel one");
   }
   if (jobs_.size() >= max_kept) {
     std::erase_if(jobs_, [first = jobs_.front()->id()](const std::shared_ptr<Job>& job) {

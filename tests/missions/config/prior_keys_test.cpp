@@ -85,8 +85,8 @@ TEST(PriorKeys, ReadBackFromSettings) {
 
 TEST(PriorKeys, ReportInvalidValuesWithLine) {
   EXPECT_EQ(error_message("prior: {file: a.obj}\n"),
-            "m.yaml:3: key prior is a map; it must be a list of maps, each with file, role and "
-            "further keys");
+            "m.yaml:3: key prior is a map; it must be a list of YAML mappings, each with file, "
+            "role and further keys");
   EXPECT_EQ(error_message("prior: [a.obj]\n"), "m.yaml:3: key prior[0] is a.obj; it must be a map");
   EXPECT_THAT(error_message("prior:\n  - {file: a.obj, role: target}\n  - {role: target}\n"),
               StartsWith("m.yaml:5: key prior[1].file is missing; it must be a string"));
