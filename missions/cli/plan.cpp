@@ -77,6 +77,16 @@ std::string planning_text(const session::SurveyRecord& record) {
   return text + ")";
 }
 
+/// Returns the surface that remains if no remaining view is reachable.
+std::string missing_text(const session::SurveyRecord& record) {
+  if (record.stop_reason != survey::StopReason::nowhere_to_go || !record.estimate ||
+      record.estimate->unreachable <= 0.0) {
+    return "";
+  }
+  return "  missing   estimate: " + percent(record.estimate->unreachable) +
+         " of the surface, visible only from positions that are not verified as free\n";
+}
+
 std::string summary_text(const std::string& name, const PlanOptions& options,
                          const evaluation::SimulationOptions& simulation,
                          const session::SurveyRecord& record,
@@ -93,6 +103,7 @@ std::string summary_text(const std::string& name, const PlanOptions& options,
   text += "\n" + package::target_text(package::target_coverage(
                      simulation.scene, simulation.evaluation.registration_distance,
                      record.cloud.positions));
+  text += missing_text(record);
   if (flight && flight->written) text += package::written_text(*flight->written);
   if (simulation.scene.model == "prior") {
     text += "  scene     prior data of the targets, used as ground truth\n";

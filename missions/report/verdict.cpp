@@ -139,6 +139,12 @@ Json verdict(const Json& summary) {
                   .because = stop_words().value(stop, stop),
                   .lights = {},
                   .else_light = is_interrupted ? "red" : "amber"};
+  const Json missing = at(summary, "/estimate/missing/unreachable");
+  if (stop == session::to_string(survey::StopReason::nowhere_to_go) && missing.is_number() &&
+      missing.get<double>() > 0.0) {
+    verdict.because += fmt::format("; estimate: {:.1f}% of the surface is unreachable",
+                                   100.0 * missing.get<double>());
+  }
   add_coverage(summary, verdict.lights);
   add_region(summary, verdict.lights);
   if (const Json views = at(summary, "/views"); views.is_number()) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace skycap::survey::surfel {
 namespace {
@@ -174,6 +175,31 @@ SpaceState FreeSpaceHistory::query_surface(const Eigen::Vector3f& point,
 bool FreeSpaceHistory::is_verified_empty(const Eigen::Vector3f& centre, float radius) const {
   return std::any_of(images_.rbegin(), images_.rend(),
                      [&](const DepthImage& image) { return shows_empty(image, centre, radius); });
+}
+
+bool FreeSpaceHistory::is_jointly_verified_empty(const Eigen::Vector3f& centre,
+                                                 float radius) const {
+  constexpr int divisions = 3;  // The smallest balls have 22% of the radius.
+  return is_verified_empty(centre, radius) ||
+         is_cube_verified(centre, radius, {centre, radius}, divisions);
+}
+
+bool FreeSpaceHistory::is_cube_verified(const Eigen::Vector3f& centre, float half_edge,
+                                        const Ball& ball, int divisions) const {
+  const Eigen::Vector3f offset = (centre - ball.centre).cwiseAbs();
+  const Eigen::Vector3f gap = (offset.array() - half_edge).cwiseMax(0.0F);
+  if (gap.squaredNorm() > ball.radius * ball.radius) return true;
+  if (is_verified_empty(centre, std::numbers::sqrt3_v<float> * half_edge)) return true;
+  if (divisions == 0) return false;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector3f side((corner & 1) != 0 ? 1.0F : -1.0F, (corner & 2) != 0 ? 1.0F : -1.0F,
+                               (corner & 4) != 0 ? 1.0F : -1.0F);
+    if (!is_cube_verified(centre + 0.5F * half_edge * side, 0.5F * half_edge, ball,
+                          divisions - 1)) {
+      return false;
+    }
+  }
+  return true;
 }
 
 bool FreeSpaceHistory::shows_empty(const DepthImage& image, const Eigen::Vector3f& centre,

@@ -80,6 +80,11 @@ class FreeSpaceHistory {
   /// are behind it. Rays without a return never prove this, even with `misses_are_empty`.
   bool is_verified_empty(const Eigen::Vector3f& centre, float radius) const;
 
+  /// Returns whether several scans together verify that the ball is empty: each of the smaller
+  /// balls that cover it satisfies is_verified_empty(). Slower than is_verified_empty(), which
+  /// implies it.
+  bool is_jointly_verified_empty(const Eigen::Vector3f& centre, float radius) const;
+
   std::size_t image_count() const { return count_; }  ///< number of images added so far
   std::size_t bytes() const { return bytes_; }        ///< size of the stored images [bytes]
 
@@ -108,6 +113,14 @@ class FreeSpaceHistory {
   /// Returns whether the sensor would have measured a surface at this position.
   bool is_in_range(const DepthImage& image, const Eigen::Vector3f& point, float depth) const;
   static bool shows_empty(const DepthImage& image, const Eigen::Vector3f& centre, float radius);
+  struct Ball {
+    Eigen::Vector3f centre;
+    float radius;
+  };
+  /// Returns whether the part of the cube inside the ball is verified. The cube is divided up to
+  /// `divisions` times.
+  bool is_cube_verified(const Eigen::Vector3f& centre, float half_edge, const Ball& ball,
+                        int divisions) const;
 
   float tolerance_;
   bool misses_are_empty_;

@@ -184,6 +184,8 @@ void PredictedSurface::emit_chain(const SurfelMap& map, const FreeSpaceHistory& 
     const Continuation kind = continuation == Continuation::straight && !was_looked_at
                                   ? Continuation::beyond
                                   : continuation;
+    patch.is_unobserved = !was_looked_at;
+    if (settings_.is_unobserved_only && was_looked_at) continue;
     patch.edge = std::max(h, 0.8F * h * scale);
     patch.kind = rate_index(kind, step);
     patch.key = patch_key(patch.position, patch.normal, patch.edge, step);

@@ -53,13 +53,15 @@ struct PredictedPatch {
   std::uint8_t kind;       ///< 5 * step + continuation, or prior_kind
   std::uint64_t
       key;  ///< identifier of the hypothesis, computed from position, orientation and step
+  bool is_unobserved = false;  ///< outside all images, or beyond the sensor's range in each of them
 };
 
 struct PredictedSurfaceSettings {
-  int steps = 3;             ///< patches per chain, at most 5
-  bool learns_rates = true;  ///< if false, the rates keep their initial values
-  float retention = 0.85F;   ///< fraction of the evidence on rates kept from scan to scan
-  unsigned threads = 1;      ///< zero: all processors
+  int steps = 3;                    ///< patches per chain, at most 5
+  bool learns_rates = true;         ///< if false, the rates keep their initial values
+  float retention = 0.85F;          ///< fraction of the evidence on rates kept from scan to scan
+  unsigned threads = 1;             ///< zero: all processors
+  bool is_unobserved_only = false;  ///< omit patches that an image contains within range
 };
 
 class PredictedSurface {

@@ -35,6 +35,10 @@ constexpr int max_idle_scans = 8;
 constexpr double scans_per_object = 7.0;
 /// Length of unknown space, as a fraction of d, with a line-of-sight confidence of 37%.
 constexpr double line_of_sight_scale = 0.15;
+/// Patches per chain where no scan could have shown surface: up to 26 surfel spacings.
+constexpr int unobserved_steps = 5;
+/// Clusters of the remaining surface. They are small, because few positions near them are verified.
+constexpr int max_remaining_clusters = 300, remaining_cells_across = 16;
 /// A depth discontinuity is at least six standard deviations, which noise rarely reaches within a
 /// block. While the noise is unknown, it is a fraction of the scene.
 constexpr double unknown_noise_jump = 0.05, noise_jump = 6.0;
@@ -56,6 +60,7 @@ struct SurfelPlanner::Impl {
         camera(sensor),
         distance(given.view_distance.value_or(0.5 * given.coverage_radius / ray_spacing(camera))),
         line_of_sight(static_cast<float>(line_of_sight_scale * distance)),
+        remaining_line_of_sight(static_cast<float>(line_of_sight_scale * distance)),
         kept(given.spacing.value_or(0.5 * given.coverage_radius), distance * ray_spacing(camera)) {
     gain.view_distance = distance;
     gain.max_incidence = std::min(gain.max_incidence, static_cast<float>(given.max_incidence));
@@ -92,6 +97,11 @@ struct SurfelPlanner::Impl {
         .steps = config.ablation.surface_prediction ? config.continuation_steps : 0,
         .learns_rates = config.ablation.learned_rates,
         .threads = config.threads});
+    unobserved.emplace(
+        PredictedSurfaceSettings{.steps = config.ablation.surface_prediction ? unobserved_steps : 0,
+                                 .learns_rates = false,
+                                 .threads = config.threads,
+                                 .is_unobserved_only = true});
     if (config.prior) predicted->expect({*config.prior, static_cast<float>(h)});
   }
 
@@ -167,6 +177,26 @@ struct SurfelPlanner::Impl {
     field.emplace(*map, predicted->patches(), camera, *coverage_model, gain,
                   predicted->prior_occluders(), &line_of_sight);
     asked = {};
+    remaining_field.reset();
+  }
+
+  /// Updates the targets of the remaining surface: the predicted patches with their yield. Patches
+  /// that no scan could have shown have their initial rates and longer chains.
+  void predict_remaining() {
+    if (remaining_field) return;
+    unobserved->predict(*map, *space, region);
+    remaining.clear();
+    const auto prediction_weight = static_cast<float>(std::min(1.0, yield.value()));
+    for (PredictedPatch patch : predicted->patches()) {
+      patch.weight *= prediction_weight;
+      if (!patch.is_unobserved) remaining.push_back(patch);
+    }
+    remaining.insert(remaining.end(), unobserved->patches().begin(), unobserved->patches().end());
+    remaining_line_of_sight.update(remaining, *space, config.threads);
+    remaining_field.emplace(*map, remaining, camera, *coverage_model, gain,
+                            predicted->prior_occluders(), &remaining_line_of_sight);
+    remaining_asked = {};
+    unverified_asked = {};
   }
 
   /// Returns the box in which unknown space may contain obstacles.
@@ -177,24 +207,49 @@ struct SurfelPlanner::Impl {
     return box.cast<double>();
   }
 
-  bool is_free(const View& view, const Eigen::AlignedBox3d& keep_out_box) const {
+  /// Evidence required that a position is free.
+  enum class Proof { one_scan, several_scans };
+
+  bool is_free(const View& view, const Eigen::AlignedBox3d& keep_out_box, Proof proof) const {
     if (!keep_out_box.contains(view.position)) return true;
     const Vector3f at = view.position.cast<float>();
-    const auto radius =
-        static_cast<float>(std::max<double>(config.limits.min_standoff, map->spacing()));
-    return space->is_verified_empty(at, radius) && !map->has_surfel_near(at, radius);
+    const float radius = clearance();
+    if (proof == Proof::one_scan) {
+      return space->is_verified_empty(at, radius) && !map->has_surfel_near(at, radius);
+    }
+    return !map->has_surfel_near(at, radius) && space->is_jointly_verified_empty(at, radius);
   }
 
-  Admission admission() const {
+  /// Returns the minimum distance of views from unknown space and measured surface [m].
+  float clearance() const {
+    return static_cast<float>(std::max<double>(config.limits.min_standoff, map->spacing()));
+  }
+
+  Eigen::AlignedBox3d keep_out_box() const {
     const Vector3d min_standoff = Vector3d::Constant(config.limits.min_standoff);
-    const Eigen::AlignedBox3d seen = obstacle_box(),
-                              box(seen.min() - min_standoff, seen.max() + min_standoff);
-    return [this, box](const View& view) {
+    const Eigen::AlignedBox3d seen = obstacle_box();
+    return {seen.min() - min_standoff, seen.max() + min_standoff};
+  }
+
+  Admission admission(Proof proof) const {
+    return [this, box = keep_out_box(), proof](const View& view) {
       const bool is_rejected =
           std::any_of(rejected.begin(), rejected.end(), [&](const View& other) {
             return (view.position - other.position).norm() < 0.1 * distance;
           });
-      return !is_rejected && is_free(view, box) && (!may_be_at || may_be_at(view.position));
+      return !is_rejected && is_free(view, box, proof) && (!may_be_at || may_be_at(view.position));
+    };
+  }
+
+  /// Returns a function that admits the other positions which may be free: they are not verified,
+  /// but no scan shows that they are behind or near surface.
+  Admission unverified_admission() const {
+    return [this, box = keep_out_box()](const View& view) {
+      const Vector3f at = view.position.cast<float>();
+      const SpaceState state = space->query(at);
+      if (state == SpaceState::hidden || state == SpaceState::measured) return false;
+      if (map->has_surfel_near(at, clearance())) return false;
+      return !is_free(view, box, Proof::several_scans) || (may_be_at && !may_be_at(view.position));
     };
   }
 
@@ -214,25 +269,95 @@ struct SurfelPlanner::Impl {
   std::optional<View> choose() {
     const double path_length = max_path_length();
     view_selector.prediction_yield = yield.value();
-    const auto choice =
-        choose_view(*field, config.limits, admission(), present, path_length, view_selector, asked);
+    const auto choice = choose_view(*field, config.limits, admission(Proof::one_scan), present,
+                                    path_length, view_selector, asked);
     chances = choice ? choice->chances : std::vector<float>(field->targets().size(), 0.0F);
     next_gain = choice && map->area() > 0.0 ? choice->best_gain / map->area() : 0.0;
+    remaining_patches.clear();
+    remaining_area = 0.0;
+    has_remaining = false;
     stop = reason_to_stop();
-    if (stop != SurfelStop::running) return std::nullopt;
-    if (!choice) {
-      stop = config.stop.max_length && std::isfinite(path_length) ? SurfelStop::max_length
-             : std::isfinite(path_length)                         ? SurfelStop::max_time
-                                                                  : SurfelStop::nothing_in_reach;
+    if (stop == SurfelStop::max_length || stop == SurfelStop::max_time) return std::nullopt;
+    const double min_gain = config.stop.min_gain * reference_area();
+    if (stop == SurfelStop::running && choice && choice->best_gain >= min_gain) {
+      return propose(*choice, true);
+    }
+    if (stop == SurfelStop::running && !choice && std::isfinite(path_length)) {
+      stop = config.stop.max_length ? SurfelStop::max_length : SurfelStop::max_time;
       return std::nullopt;
     }
-    if (choice->best_gain < config.stop.min_gain * reference_area()) {
-      stop = SurfelStop::little_gain;
-      return std::nullopt;
+    const auto remaining_choice = assess_remaining(path_length);
+    if (stop == SurfelStop::target_coverage) {
+      stop = reason_to_stop();  // the estimate now includes the remaining surface
+      if (stop == SurfelStop::target_coverage) return std::nullopt;
+      if (stop == SurfelStop::running && choice && choice->best_gain >= min_gain) {
+        return propose(*choice, true);
+      }
     }
-    proposed = choice->view;
-    if (config.sees_lines) gain_prediction = compute_prediction(*field, *map, choice->with_leg);
-    return proposed;
+    if (stop == SurfelStop::running && remaining_choice) return propose(*remaining_choice, false);
+    if (stop == SurfelStop::running) {
+      stop = choice && !has_remaining ? SurfelStop::little_gain : SurfelStop::nothing_in_reach;
+    } else if (has_remaining) {
+      stop = SurfelStop::nothing_in_reach;
+    }
+    return std::nullopt;
+  }
+
+  View propose(const Choice& choice, bool is_of_field) {
+    proposed = choice.view;
+    if (config.sees_lines) {
+      gain_prediction =
+          is_of_field ? compute_prediction(*field, *map, choice.with_leg) : GainPrediction{};
+    }
+    return choice.view;
+  }
+
+  /// Determines the remaining surface: predicted patches that only views at unverified positions
+  /// would show, and patches that no scan could have shown. If a view of it would gain enough, adds
+  /// it to the estimate. Returns the best view from a position that several scans together verify,
+  /// possibly at a shorter distance, or nullopt if no such view gains enough.
+  std::optional<Choice> assess_remaining(double path_length) {
+    predict_remaining();
+    ViewSelectorSettings settings = view_selector;
+    settings.prediction_yield = 1.0;
+    const auto unverified =
+        choose_view(*remaining_field, config.limits, unverified_admission(), present,
+                    std::numeric_limits<double>::infinity(), settings, unverified_asked);
+    settings.distances = {1.0, 0.8, 0.65, 0.5, 0.4, 0.3};
+    if (settings.clusters > 0) settings.clusters = max_remaining_clusters;
+    settings.cells_across = remaining_cells_across;
+    const double min_gain = config.stop.min_gain * reference_area();
+    double unobserved_area = 0.0;
+    for (const PredictedPatch& patch : unobserved->patches()) unobserved_area += patch.weight;
+    std::optional<Choice> verified;
+    if (unobserved_area >= min_gain) {
+      verified = choose_view(*remaining_field, config.limits, admission(Proof::several_scans),
+                             present, path_length, settings, remaining_asked);
+      if (verified && verified->best_gain < min_gain) verified.reset();
+    }
+    has_remaining = verified || (unverified && unverified->best_gain >= min_gain);
+    if (!has_remaining) return std::nullopt;
+    for (std::size_t t = 0; t < remaining_field->targets().size(); ++t) {
+      if (!remaining_field->is_patch(t)) continue;
+      const PredictedPatch& patch = remaining[remaining_field->source(t)];
+      float chance = unverified ? unverified->chances[t] : 0.0F;
+      if (patch.is_unobserved) {
+        if (verified) chance = std::max(chance, verified->chances[t]);
+        // The unknown space in front of it is part of what remains.
+        chance = chance > 0.0F ? 1.0F : 0.0F;
+      }
+      if (!(chance > 0.0F)) continue;
+      remaining_patches.push_back(
+          {patch.position, patch.normal, chance * patch.weight, 0.0F, MissingReason::unreachable});
+      remaining_area += remaining_patches.back().area;
+    }
+    // The estimate already contains the patches that no scan could have shown.
+    for (std::size_t t = 0; t < chances.size(); ++t) {
+      if (field->is_patch(t) && predicted->patches()[field->source(t)].is_unobserved) {
+        chances[t] = 0.0F;
+      }
+    }
+    return verified;
   }
 
   /// Returns the area to which the fractions of the stop rule refer [m^2].
@@ -261,7 +386,7 @@ struct SurfelPlanner::Impl {
 
   double predicted_coverage() const {
     if (!map || map->surfels().size() == 0) return 0.0;
-    return map->covered_area() / (map->area() + predicted_area());
+    return map->covered_area() / (map->area() + predicted_area() + remaining_area);
   }
 
   std::size_t insert(const ScanSpan& scan) {
@@ -317,7 +442,7 @@ struct SurfelPlanner::Impl {
   ViewSelectorSettings view_selector;
   std::optional<Eigen::AlignedBox3f> region;
 
-  LineOfSightModel line_of_sight;
+  LineOfSightModel line_of_sight, remaining_line_of_sight;
   PredictionYield yield;
   SpacedCloud kept;
   PlanningStep step;
@@ -335,7 +460,14 @@ struct SurfelPlanner::Impl {
   std::optional<FreeSpaceHistory> space;
   std::optional<PredictedSurface> predicted;
   std::optional<GainField> field;
-  ViewGainCache asked;             ///< cached gains of the field from the present view
+  ViewGainCache asked;                         ///< cached gains of the field from the present view
+  std::optional<PredictedSurface> unobserved;  ///< patches that no scan could have shown
+  std::vector<PredictedPatch> remaining;       ///< see predict_remaining()
+  std::optional<GainField> remaining_field;    ///< none: not up to date
+  ViewGainCache remaining_asked, unverified_asked;
+  std::vector<EstimatedPatch> remaining_patches;  ///< see assess_remaining()
+  double remaining_area = 0.0;                    ///< sum of the areas of remaining_patches [m^2]
+  bool has_remaining = false;      ///< a view of the remaining surface would gain enough
   GainPrediction gain_prediction;  ///< predicted gain of the path to the proposed view, for lines
   std::vector<float> chances;      ///< probability that a good view sees each target, if it exists
 
@@ -356,6 +488,8 @@ SurveyEstimate SurfelPlanner::Impl::estimate() const {
   if (!map) return estimate;
   estimate.patches = estimated_patches(*map, *field, predicted->patches(), chances,
                                        static_cast<float>(yield.value()));
+  estimate.patches.insert(estimate.patches.end(), remaining_patches.begin(),
+                          remaining_patches.end());
   add_up(estimate);
   estimate.coverage = predicted_coverage();
   estimate.next_gain = next_gain;
@@ -391,7 +525,9 @@ SurfelStop SurfelPlanner::stop() const { return impl_->stop; }
 
 StopReason SurfelPlanner::stop_reason() const {
   if (impl_->stop == SurfelStop::max_length) return StopReason::distance_limit;
-  return impl_->stop == SurfelStop::max_time ? StopReason::time_limit : StopReason::complete;
+  if (impl_->stop == SurfelStop::max_time) return StopReason::time_limit;
+  if (impl_->stop == SurfelStop::target_coverage) return StopReason::complete;
+  return impl_->has_remaining ? StopReason::nowhere_to_go : StopReason::complete;
 }
 
 std::string_view SurfelPlanner::stop_rule() const {

@@ -50,10 +50,11 @@ Vector3d tilted(const Vector3d& axis, double tilt, double azimuth) {
 
 /// Groups targets by coarse cell and main axis of their normal. Returns the groups with the largest
 /// weight first.
-std::vector<Cluster> heaviest_clusters(const GainField& field, std::size_t count) {
+std::vector<Cluster> heaviest_clusters(const GainField& field, std::size_t count,
+                                       int cells_across) {
   Eigen::AlignedBox3f box;
   for (const auto& target : field.targets()) box.extend(target.position);
-  const float cell = std::max(box.sizes().maxCoeff() / 7.0F, 1e-6F);
+  const float cell = std::max(box.sizes().maxCoeff() / static_cast<float>(cells_across), 1e-6F);
   // std::map, so that the order of equal weights does not depend on the platform.
   std::map<std::array<int, 4>, Cluster> clusters;
   for (const auto& target : field.targets()) {
@@ -130,15 +131,20 @@ class ViewSelector {
 
  private:
   void add_candidate(const Vector3d& target, const Vector3d& towards_view, double distance) {
-    const auto view = limits_.make_target_view(target, towards_view, distance);
-    if (!view || (view->position - position_).norm() > max_path_length_ || !admits_(*view)) return;
-    candidates_.push_back({*view, {}});
+    for (const double fraction : settings_.distances) {
+      const auto view = limits_.make_target_view(target, towards_view, fraction * distance);
+      if (!view || (view->position - position_).norm() > max_path_length_ || !admits_(*view)) {
+        continue;
+      }
+      candidates_.push_back({*view, {}});
+      return;
+    }
   }
 
   void propose_candidates() {
     int turn = 0;
-    for (const Cluster& cluster :
-         heaviest_clusters(field_, static_cast<std::size_t>(settings_.clusters))) {
+    for (const Cluster& cluster : heaviest_clusters(
+             field_, static_cast<std::size_t>(settings_.clusters), settings_.cells_across)) {
       const Vector3d target = cluster.position / cluster.weight;
       const Vector3d normal = cluster.normal.norm() > 1e-6 * cluster.weight
                                   ? Vector3d(cluster.normal.normalized())

@@ -19,8 +19,12 @@ namespace skycap::survey::surfel {
 
 struct ViewSelectorSettings {
   double view_distance = 2.0;  ///< d: distance of views from their targets [m]
-  double view_price = 4.0;     ///< fixed cost of a view, in metres of path
-  int clusters = 40;           ///< number of target clusters for which candidates are generated
+  /// Distances of candidates from their targets, as fractions of `view_distance` in descending
+  /// order. The first admissible distance is used.
+  std::vector<double> distances = {1.0};
+  double view_price = 4.0;  ///< fixed cost of a view, in metres of path
+  int clusters = 40;        ///< number of target clusters for which candidates are generated
+  int cells_across = 7;     ///< number of cluster cells along the longest side of all targets
   int global_directions =
       40;               ///< number of candidates distributed evenly around all uncovered surface
   int refinements = 3;  ///< number of rounds in which the best candidates are moved

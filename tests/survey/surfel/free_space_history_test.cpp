@@ -171,6 +171,32 @@ TEST(FreeSpaceHistory, VerifiesBallsAsEmptyOnlyInFrontOfReturns) {
   EXPECT_FALSE(history.is_verified_empty({-1.0F, 0, 0}, 0.1F));
 }
 
+// A wall of large spheres is 1.5 m in front of two cameras whose images overlap. Neither image
+// contains the whole ball between them.
+TEST(FreeSpaceHistory, VerifiesBallsAsEmptyFromSeveralScans) {
+  const std::vector<tests::Sphere> wall = {{.centre = {51.5, 0, 0}, .radius = 50.0}};
+  surfel::FreeSpaceHistory history(tolerance, true);
+  for (const double side : {-0.4, 0.4}) {
+    const geometry::View view{{0, side, 0}, {1, 0, 0}};
+    history.add(surfel::make_block_image(tests::scan_spheres(wall, camera, view), camera,
+                                         {.block_px = 4, .jump = 0.1F}),
+                0.0F);
+  }
+  const Vector3f between(0.9F, 0, 0);
+  EXPECT_FALSE(history.is_verified_empty(between, 0.15F));
+  EXPECT_TRUE(history.is_jointly_verified_empty(between, 0.15F));
+  EXPECT_FALSE(history.is_jointly_verified_empty({1.4F, 0, 0}, 0.15F));     // extends into the wall
+  EXPECT_FALSE(history.is_jointly_verified_empty({0.9F, 0, 0.2F}, 0.15F));  // above the images
+  int verified = 0;
+  for (const Vector3f& p : points_in_ball(1.6F, 4000)) {
+    if (!history.is_jointly_verified_empty(p, 0.1F)) continue;
+    ++verified;
+    EXPECT_GE((p.cast<double>() - wall[0].centre).norm(), wall[0].radius + 0.1 - 0.001);
+    EXPECT_GE(p.x(), 0.1F);
+  }
+  EXPECT_GT(verified, 100);
+}
+
 /// Many observations of one side, after one early observation of the other side.
 TEST(FreeSpaceHistory, RemovesRedundantImages) {
   std::mt19937_64 random(5);
