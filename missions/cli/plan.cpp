@@ -83,7 +83,7 @@ std::string missing_text(const session::SurveyRecord& record) {
       record.estimate->unreachable <= 0.0) {
     return "";
   }
-  return "  missing   estimate: at least " + percent(record.estimate->unreachable) +
+  return "  missing   estimate: " + percent(record.estimate->unreachable) +
          " of the surface, visible only from positions that are not verified as free\n";
 }
 

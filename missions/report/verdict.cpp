@@ -142,7 +142,7 @@ Json verdict(const Json& summary) {
   const Json missing = at(summary, "/estimate/missing/unreachable");
   if (stop == session::to_string(survey::StopReason::nowhere_to_go) && missing.is_number() &&
       missing.get<double>() > 0.0) {
-    verdict.because += fmt::format("; estimate: at least {:.1f}% of the surface is missing",
+    verdict.because += fmt::format("; estimate: {:.1f}% of the surface is unreachable",
                                    100.0 * missing.get<double>());
   }
   add_coverage(summary, verdict.lights);

@@ -109,6 +109,38 @@ TEST(SurfelPlanner, CoversSceneLargerThanTheRange) {
   EXPECT_NEAR(planner.predicted_coverage(), coverage, 0.05);
 }
 
+// All views at the view distance are inside the box of the scene, where no return verifies free
+// space: the survey must not be called complete.
+TEST(SurfelPlanner, ReportsSurfaceThatOnlyUnverifiedPositionsShow) {
+  const std::vector<tests::Sphere> large_ball = {{.radius = 1.5}};
+  const geometry::Camera sensor({.width = 212, .height = 120, .max_range = 2.06});
+  surfel::SurfelConfig config = small_config();
+  config.scene_box = Eigen::AlignedBox3d(Vector3d(-4.5, -4.5, -4.5), Vector3d(4.5, 4.5, 4.5));
+  config.limits.min_standoff = 0.2;
+  surfel::SurfelPlanner planner(config, sensor);
+  const Flight flight =
+      fly(planner, large_ball, 0.0, 200, true, sensor, geometry::look_at({3.5, 0, 0}, {0, 0, 0}));
+  EXPECT_LT(true_coverage(planner, large_ball, 0.02), 0.5);
+  EXPECT_LT(planner.predicted_coverage(), 0.5);
+  EXPECT_EQ(planner.stop_reason(), StopReason::nowhere_to_go);
+  for (const View& view : flight.views) EXPECT_GT(view.position.norm(), 1.5 + 0.2 - 0.01);
+}
+
+// No permitted view shows the back of the ball.
+TEST(SurfelPlanner, NamesRemainingSurfaceOutOfReach) {
+  const std::vector<tests::Sphere> large_ball = {{.radius = 1.5}};
+  const geometry::Camera sensor({.width = 212, .height = 120, .max_range = 2.06});
+  surfel::SurfelPlanner planner(small_config(), sensor);
+  planner.keep_to([](const Vector3d& position) { return position.x() > 1.0; });
+  fly(planner, large_ball, 0.0, 80, true, sensor, geometry::look_at({3.5, 0, 0}, {0, 0, 0}));
+  const double coverage = true_coverage(planner, large_ball, 0.02);
+  EXPECT_LT(coverage, 0.8);
+  EXPECT_EQ(planner.stop_reason(), StopReason::nowhere_to_go);
+  EXPECT_EQ(planner.stop_rule(), "no_reachable_view");
+  EXPECT_GT(planner.estimate().unreachable, 0.05);
+  EXPECT_LT(planner.predicted_coverage(), 0.95);
+}
+
 // Surface observed en route need not be observed again.
 TEST(SurfelPlanner, UsesEnRouteScans) {
   surfel::SurfelPlanner standing(small_config(), camera), moving(small_config(), camera);

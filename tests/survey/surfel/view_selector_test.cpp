@@ -220,6 +220,24 @@ std::optional<surfel::Choice> choose(const surfel::GainField& field,
   return surfel::choose_view(field, {}, admits, from, max_path_length, settings, nothing);
 }
 
+TEST(ViewSelector, ApproachesTargetsThatAreClosedAtTheViewDistance) {
+  const Known known({2, 0, 0});
+  const surfel::GainField field = known.field();
+  const surfel::Admission near_only = [](const geometry::View& view) {
+    return view.position.norm() < 1.4;
+  };
+  surfel::ViewSelectorSettings settings{.view_distance = 2.0};
+  for (const std::vector<double>& distances : {std::vector{1.0}, std::vector{1.0, 0.7, 0.4}}) {
+    settings.distances = distances;
+    surfel::ViewGainCache cache;
+    const auto choice = surfel::choose_view(field, {}, near_only, from, infinity, settings, cache);
+    EXPECT_EQ(choice.has_value(), distances.size() > 1);
+    if (choice) {
+      EXPECT_LT(choice->view.position.norm(), 1.4);
+    }
+  }
+}
+
 TEST(ViewSelector, SelectsViewOfMissingSurface) {
   const Known known({2, 0, 0});
   const surfel::GainField field = known.field();
