@@ -81,7 +81,7 @@ class JobList {
  public:
   /// Starts a job. Throws Error{bad_usage} if too many are running.
   std::shared_ptr<Job> start(JobRequest request);
-  std::shared_ptr<Job> find(int id) const;  ///< null if there is none
+  std::shared_ptr<Job> find(int id) const;  ///< null if the number is unknown
   std::vector<JobState> states() const;     ///< without lines
   /// Cancels all jobs and waits until they have saved their results.
   void cancel_all();

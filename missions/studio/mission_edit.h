@@ -12,8 +12,8 @@ namespace skycap::missions::studio {
 std::map<std::string, std::string> list_values(const std::string& text, const std::string& name);
 
 /// Returns the text with a key set to a value in YAML notation; an empty value removes the key.
-/// Throws Error{bad_config} if the value is not one YAML value, or if the key is written so that
-/// it cannot be replaced without changing others. The text must then be edited directly.
+/// Throws Error{bad_config} if the value is not one YAML value. It also throws if the layout does
+/// not permit replacing the key alone; the text must then be edited directly.
 std::string with_key(const std::string& text, const std::string& key, const std::string& value);
 
 }  // namespace skycap::missions::studio

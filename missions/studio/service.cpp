@@ -1,3 +1,19 @@
+// Paths of requests below the page's token:
+//
+//     GET  /                        page; also /studio.js and /studio.css
+//     GET  /api/state               folder, file to open, tokens, jobs
+//     GET  /api/files               files of the work folder
+//     GET  /api/package?path=       files of a results folder
+//     GET  /api/schema              JSON Schema of mission files
+//     GET  /api/mission?path=       text, version and values
+//     POST /api/edit                {text, key, value}: text with the key set, and its values
+//     POST /api/save                {path, text, version}: 409 if the file has changed
+//     POST /api/jobs                {command, options, draft}: starts a command
+//     GET  /api/jobs/N?from=        state and output lines of a job
+//     GET  /api/jobs/N/events       the same as server-sent events
+//     POST /api/jobs/N/cancel
+//
+// Below the token for files: GET /PATH, or /PATH?download=1.
 #include "missions/studio/service.h"
 
 #include <array>

@@ -43,7 +43,7 @@ class WorkFolder {
   /// Lists the files of a results folder.
   std::vector<ListedFile> list_package(const std::string& package) const;
 
-  /// Reads a text of at most 4 MiB. Throws Error{bad_file}.
+  /// Reads a file of at most 4 MiB. Throws Error{bad_file}.
   VersionedText read(const std::string& relative) const;
 
   /// Replaces a mission file atomically if it is still `version`; an empty version: if it does not

@@ -242,6 +242,8 @@ class StudioTest(unittest.TestCase):
         self.assertTrue(list(self.folder.glob("*.yaml")), studio.message())
         for step in ("site", "mission", "results"):
             studio.click(f"nav button[data-step={step}]")
+            for summary in studio.browser.find_elements(By.CSS_SELECTOR, f"#{step} summary"):
+                studio.click(summary)
             shown = [one for one in studio.browser.find_elements(
                 By.CSS_SELECTOR, f"#{step} input, #{step} select, #{step} textarea, #{step} iframe")
                      if one.is_displayed()]

@@ -149,9 +149,10 @@ Modules architecture() {
               {"package", "config", "scan", "simulation", "evaluation", "session", "scene",
                "site_data", "support"});
   add_library({"studio"}, {}, {"config", "support"});
-  add_library({"cli", "cli/clouds"}, {"sim", "survey", "flight"},
-              {"studio", "report", "batch", "photo", "inspection", "wizard", "package", "config", "online",
-               "scan", "simulation", "evaluation", "session", "scene", "site_data", "support"});
+  add_library(
+      {"cli", "cli/clouds"}, {"sim", "survey", "flight"},
+      {"studio", "report", "batch", "photo", "inspection", "wizard", "package", "config", "online",
+       "scan", "simulation", "evaluation", "session", "scene", "site_data", "support"});
   // Like a user of the library: public headers only.
   add("python",
       {"sim/models", "sim/sensors", "survey", "flight/clearance", "flight/route", "missions/api"});
