@@ -52,8 +52,8 @@ std::vector<std::string> make_warnings(const config::MissionSetup& setup,
   if (!mission.flight) {
     warnings.push_back(
         "no mission with waypoints is written: " + mission.flight_failure +
-        ". Fly the setpoints with an offboard controller, and plan the legs from the take-off "
-        "point to the start of the route and from its end back to the take-off point");
+        ". Fly the setpoints with an offboard controller. Plan the legs from the take-off point to "
+        "the start of the route, and from its end to the take-off point, separately");
     return warnings;
   }
   const flight::Route& route = mission.flight->mission.route;
