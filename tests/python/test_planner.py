@@ -143,7 +143,7 @@ class Arrays(SmallMission):
                 ((points[:, :2], pose, pixels), ValueError, "shape"),
                 ((points, pose[:3], pixels), ValueError, r"\(4, 4\)"),
                 ((points, skewed, pixels), ValueError, "rotation"),
-                ((broken, pose, pixels), skycap.Error, "point 1, which is not finite"),
+                ((broken, pose, pixels), skycap.Error, r"invalid point \(number 1\): it is not finite"),
                 ((points, pose, pixels[:-1]), skycap.Error, "each point requires one"),
                 ((points, pose, pixels[::-1]), skycap.Error, "are not ascending"),
                 ((np.zeros((0, 3)), pose), skycap.Error, "no point of the scene"),
