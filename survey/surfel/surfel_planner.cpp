@@ -317,6 +317,8 @@ struct SurfelPlanner::Impl {
   /// it to the estimate. Returns the best view from a position that several scans together verify,
   /// possibly at a shorter distance, or nullopt if no such view gains enough.
   std::optional<Choice> assess_remaining(double path_length) {
+    // A single line shows next to nothing, so that most surface is outside all images.
+    if (config.sees_lines) return std::nullopt;
     predict_remaining();
     ViewSelectorSettings settings = view_selector;
     settings.prediction_yield = 1.0;
