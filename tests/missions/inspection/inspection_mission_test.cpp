@@ -136,7 +136,7 @@ TEST_F(InspectionMissionTest, WritesAFlightThatItsEvaluationConfirms) {
   EXPECT_EQ(json.at("inspection").at("duration_s"), mission.plan.evaluation.duration);
   EXPECT_TRUE(json.at("inspection").at("formats_not_written").contains("plan"));
   EXPECT_THAT(thrown_message([&] { package::read_package(folder.path(), {}); }),
-              HasSubstr("is an inspection, whose route files `skycap plan` writes"));
+              HasSubstr("describes an inspection, whose route files skycap plan writes"));
 }
 
 TEST_F(InspectionMissionTest, PlansAroundAPointCloud) {

@@ -41,7 +41,8 @@ TEST(ControlPoints, NameTheLineThatIsWrong) {
   EXPECT_THAT(error_message("name,x,y,z\nP,1,2,3\nP,1,2,3\n", {}),
               HasSubstr("line 3 lists \"P\" again"));
   EXPECT_THAT(error_message("name,x,y,z\n,1,2,3\n", {}), HasSubstr("line 2 has no name"));
-  EXPECT_THAT(error_message("name,x,y,z\n", {}), HasSubstr("the file contains no points"));
+  EXPECT_THAT(error_message("name,x,y,z\n", {}),
+              HasSubstr("line 1 must be followed by at least one point"));
   EXPECT_THAT(error_message("name,latitude,longitude,height\nP,51,-1,100\n", {}),
               HasSubstr("require site.latitude_deg"));
   EXPECT_THAT(error_message("name,latitude,longitude,height\nP,510,-1,100\n", site),

@@ -322,7 +322,7 @@ TEST(Gimbals, ReportStuckGimbal) {
   EXPECT_THAT(
       failure->what,
       HasSubstr(
-          "on the requested direction: gimbal pitch 0.0 degrees instead of -20.0 (tolerance 2)"));
+          "in the requested direction: gimbal pitch 0.0 degrees instead of -20.0 (tolerance 2)"));
   EXPECT_THAT(failure->what, testing::Not(HasSubstr("position")));
 }
 

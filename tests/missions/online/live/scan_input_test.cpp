@@ -236,7 +236,7 @@ TEST(RequireUsable, RejectsInvalidScans) {
   EXPECT_THAT(message(scan), HasSubstr("outside the mission's camera"));
   scan.pixels = {5, 6};
   scan.points[1].x() = NAN;
-  EXPECT_THAT(message(scan), HasSubstr("point 1"));
+  EXPECT_THAT(message(scan), HasSubstr("invalid point (number 1)"));
   scan.points[1].x() = 20000;
   EXPECT_THAT(message(scan), HasSubstr("16384 m"));
 }

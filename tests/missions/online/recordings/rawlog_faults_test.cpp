@@ -39,7 +39,7 @@ TEST_F(Rawlog, ReportsInvalidIntrinsicsAndRangeUnits) {
   };
   EXPECT_THAT(note([](auto& scan) { scan.cameraParams.fx(0.0); }),
               HasSubstr("missing focal length"));
-  EXPECT_THAT(note([](auto& scan) { scan.cameraParams.cx(NAN); }), HasSubstr("image centre"));
+  EXPECT_THAT(note([](auto& scan) { scan.cameraParams.cx(NAN); }), HasSubstr("principal point"));
   EXPECT_THAT(note([](auto& scan) { scan.rangeUnits = 0.0F; }), HasSubstr("the depth unit"));
   EXPECT_THAT(note([](auto& scan) { scan.hasRangeImage = false; }), HasSubstr("neither"));
   EXPECT_THAT(note([](auto& scan) {
