@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 constexpr const char* structure_name = "structure.ply";
 constexpr const char* poses_name = "camera.tum";
 
-Json verdict_json(const Json& summary) {
+Json inspection_verdict(const Json& summary) {
   const Json& inspection = summary.at("inspection");
   const bool meets_goal = inspection.at("meets_goal").get<bool>();
   Verdict verdict{.is_complete = summary.at("complete").get<bool>(),
@@ -107,7 +107,7 @@ std::string inspection_page(const ResultFinder& results, std::size_t max_points)
     const Json data = {
         {"kind", "inspection"},
         {"title", summary.value("mission", std::string())},
-        {"verdict", verdict_json(summary)},
+        {"verdict", inspection_verdict(summary)},
         {"summary", summary},
         {"scene", scene_outline(setup.survey(), setup.scene(), pad)},
         {"palette", palette},
