@@ -394,7 +394,7 @@ int evaluate_shards(const EvaluateOptions& options, const Console& console) {
 /// this check. Warns about the cloud of an interrupted scan, which contains part of the flight.
 void check_input(const EvaluateOptions& options, const Console& console) {
   const fs::path& file = options.mesh.empty() ? options.cloud : options.mesh;
-  if (!fs::is_regular_file(file)) {
+  if (!fs::exists(file)) {
     throw Error(ErrorKind::bad_file, file.string() + ": does not exist");
   }
   if (fs::is_directory(file.parent_path() / scan::ScanJournal::folder_name)) {
