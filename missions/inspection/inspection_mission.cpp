@@ -38,7 +38,7 @@ std::vector<std::string> make_warnings(const config::MissionSetup& setup,
   const InspectionPlan& plan = mission.plan;
   std::vector<std::string> warnings{
       "the airspace around the structure is assumed free. Check it for trees, wires and anything "
-      "that the model does not contain."};
+      "that the model does not contain"};
   if (!plan.meets_goal) {
     const double attainable = static_cast<double>(plan.attainable[incidence_rule]);
     warnings.push_back(

@@ -307,7 +307,7 @@ std::string warnings_text(const config::MissionSetup& setup, const InspectionMis
            package::pilot_text(setup.flight(), mission.flight->mission, mission.warnings);
   }
   std::string text;
-  for (const std::string& warning : mission.warnings) text += "Warning: " + warning + "\n";
+  for (const std::string& warning : mission.warnings) text += "Warning: " + warning + ".\n";
   return text;
 }
 
