@@ -95,15 +95,40 @@ const Returns& FlightPlan::verified_returns() const {
               "\"" + name + "\" has no verified return, but the file requires a return altitude");
 }
 
-double turn_distance(const FlightPlan& plan, std::size_t index) {
+double turn_radius(const FlightPlan& plan, std::size_t index) {
   const Waypoint& waypoint = plan.waypoints[index];
   if (!waypoint.is_passed) return 0.0;
   const double before = (waypoint.position - plan.waypoints[index - 1].position).norm();
   const double after = (plan.waypoints[index + 1].position - waypoint.position).norm();
-  if (plan.vehicle.autopilot == AutopilotType::ardupilot) return 0.5 * before;
   // DJI: the damping distances of two waypoints must not exceed their leg.
   constexpr double max_share = 0.4;
-  return std::min(acceptance_radius, max_share * std::min(before, after));
+  constexpr double unit = 1e-3;  // of the values in files, in which 0 is the autopilot's default
+  const double radius = std::min(acceptance_radius, max_share * std::min(before, after));
+  return unit * std::max(1.0, std::floor(radius / unit));
+}
+
+double px4_turn_distance(const Eigen::Vector3d& leg, double radius) {
+  // Fraction of the leg that lies within a distance of its end, in one direction.
+  const auto fraction = [](double distance, double length) {
+    return distance < length ? distance / length : 1.0;
+  };
+  const double accepted = leg.norm() * std::min(fraction(radius, leg.head<2>().norm()),
+                                                fraction(px4_altitude_radius, std::abs(leg.z())));
+  return std::max(accepted, std::min(radius, leg.norm()));
+}
+
+double turn_distance(const FlightPlan& plan, std::size_t index) {
+  const Waypoint& waypoint = plan.waypoints[index];
+  if (!waypoint.is_passed) return 0.0;
+  const Eigen::Vector3d leg = waypoint.position - plan.waypoints[index - 1].position;
+  switch (plan.vehicle.autopilot) {
+    case AutopilotType::ardupilot:
+      return 0.5 * leg.norm();
+    case AutopilotType::px4:
+      return px4_turn_distance(leg, turn_radius(plan, index));
+    default:
+      return turn_radius(plan, index);
+  }
 }
 
 double leg_speed(const FlightPlan& plan, std::size_t index) {

@@ -70,12 +70,21 @@ struct FlightPlan {
   const Returns& verified_returns() const;
 };
 
+/// Returns the acceptance radius (PX4) or damping distance (DJI) of waypoint `index` in route files
+/// if the waypoint is passed, otherwise 0 [m].
+double turn_radius(const FlightPlan& plan, std::size_t index);
+
+/// Returns the maximum distance from the end of `leg` at which PX4 leaves it [m]. PX4 accepts a
+/// waypoint within `radius` horizontally and NAV_MC_ALT_RAD vertically (mission_block.cpp), so that
+/// it leaves steep legs earlier than level ones. At least `radius` or the length of the leg, so
+/// that a large radius is safe with any NAV_MC_ALT_RAD.
+double px4_turn_distance(const Eigen::Vector3d& leg, double radius);
+
 /// Returns the maximum distance from waypoint `index` at which the vehicle leaves the leg before it
 /// if the waypoint is passed, otherwise 0 [m].
 ///
 /// ArduPilot 4.1 and later blend two legs from the middle of the first one at the earliest
-/// (AP_Math/SCurve.cpp). PX4 turns within the acceptance radius of the item. DJI aircraft turn
-/// within the damping distance of the waypoint.
+/// (AP_Math/SCurve.cpp). DJI aircraft turn within the damping distance of the waypoint.
 double turn_distance(const FlightPlan& plan, std::size_t index);
 
 /// Returns the speed on the leg that ends at waypoint `index` [m/s]: that of its planned duration,

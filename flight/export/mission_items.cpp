@@ -105,8 +105,7 @@ class ItemWriter {
   void add_stop(std::size_t i, double yaw_deg) {
     const double wait = std::round((times_[i].capture - times_[i].arrival) * 1e3) / 1e3;
     const bool is_passed = plan_.waypoints[i].is_passed && !is_ardupilot();
-    const double radius =
-        is_passed ? std::ceil(turn_distance(plan_, i) * 1e3) / 1e3 : acceptance_radius;
+    const double radius = is_passed ? turn_radius(plan_, i) : acceptance_radius;
     add_position(command::waypoint, {is_ardupilot() ? 0.0 : wait, radius, 0, yaw_deg},
                  plan_.waypoints[i].position);
     if (is_ardupilot()) add_delay(wait);

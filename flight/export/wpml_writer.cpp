@@ -191,7 +191,7 @@ class WpmlWriter {
       pugi::xml_node turn = add(mark, "waypointTurnParam");
       add(turn, "waypointTurnMode", waypoint.is_passed ? wpml::passing_turn : wpml::stop_turn);
       add(turn, "waypointTurnDampingDist",
-          waypoint.is_passed ? fixed(turn_distance(plan_, index), 3) : "0");
+          waypoint.is_passed ? fixed(turn_radius(plan_, index), 3) : "0");
     }
     add(mark, "useStraightLine", "1");
     if (!waypoint.is_passed) add_actions(mark, index);

@@ -217,7 +217,10 @@ class MissionFlight {
       departure = departure_after(route_.segments.back(), 0.5 * distance);
       departure.margin = 0.0;
     } else if (!stops || radius > acceptance_radius) {
-      departure = departure_after(route_.segments.back(), radius);
+      const Vector3d leg = route_.segments.back().to - route_.segments.back().start.to;
+      departure = departure_after(route_.segments.back(), autopilot_ == AutopilotType::px4
+                                                              ? px4_turn_distance(leg, radius)
+                                                              : radius);
     }
     arrive(item, departure, stops && radius <= acceptance_radius);
   }

@@ -345,6 +345,17 @@ TEST_P(MissionInterpreter, VerifiesChainsOfCornersWithoutStop) {
   EXPECT_THAT(around(18.0, 12.0), Contains(HasSubstr("leg from item")));
 }
 
+// PX4 accepts a waypoint within the radius horizontally and within 0.8 m vertically.
+TEST(Px4TurnDistance, IsLargerOnSteepLegs) {
+  EXPECT_DOUBLE_EQ(px4_turn_distance({10, 0, 0}, 0.3), 0.3);
+  EXPECT_DOUBLE_EQ(px4_turn_distance({0, 0, -10}, 0.3), 0.8);
+  EXPECT_DOUBLE_EQ(px4_turn_distance({3, 0, 4}, 0.3), 0.5);
+  EXPECT_DOUBLE_EQ(px4_turn_distance({0.3, 0, 4}, 0.3), 0.8 * std::hypot(0.3, 4.0) / 4.0);
+  EXPECT_DOUBLE_EQ(px4_turn_distance({0, 0, 0.5}, 0.3), 0.5);
+  EXPECT_DOUBLE_EQ(px4_turn_distance({30, 0, 40}, 20.0), 20.0);
+  EXPECT_EQ(px4_turn_distance({0, 0, 0}, 0.0), 0.0);
+}
+
 // A leg that starts beside its line ends beside it, too, but nearer.
 TEST(DepartureAfter, CarriesPartOfTheOffset) {
   InterpretedSegment leg{{{0, 1, 0}, {0, 0, 0}}, {10, 0, 0}, "item 1", "item 2"};
