@@ -26,12 +26,8 @@ constexpr double min_aim_length = 0.5;
 /// Returns the heading of a yaw angle, clockwise from north [rad].
 double heading(double yaw) { return 0.5 * std::numbers::pi - yaw; }
 
-double distance_from_chord(const Vector3d& point, const Vector3d& from, const Vector3d& to) {
-  const Vector3d chord = to - from;
-  const double squared = chord.squaredNorm();
-  const double along =
-      squared > 0.0 ? std::clamp((point - from).dot(chord) / squared, 0.0, 1.0) : 0.0;
-  return (point - from - along * chord).norm();
+double distance(const Vector3d& point, const Vector3d& from, const Vector3d& to) {
+  return std::sqrt(flight::nearest(flight::Segment{from, to}, point).squared_distance);
 }
 
 /// Returns true if a straight leg with an even rotation follows the samples [begin, end].
@@ -39,7 +35,7 @@ bool is_followed(std::span<const FlightSample> flight, std::size_t begin, std::s
   const FlightSample &from = flight[begin], &to = flight[end];
   const bool checks_aim = (to.position - from.position).norm() > min_aim_length;
   for (std::size_t i = begin + 1; i < end; ++i) {
-    if (distance_from_chord(flight[i].position, from.position, to.position) > max_sag) return false;
+    if (distance(flight[i].position, from.position, to.position) > max_sag) return false;
     if (!checks_aim) continue;
     const double share = (flight[i].time - from.time) / (to.time - from.time);
     const double yaw = from.yaw + share * (to.yaw - from.yaw);
@@ -94,9 +90,8 @@ double sag(std::span<const FlightSample> flight,
     while (leg + 1 < waypoints.size() && sample.time > time + waypoints[leg].leg_time + 1e-9) {
       time += waypoints[leg++].leg_time;
     }
-    largest =
-        std::max(largest, distance_from_chord(sample.position, waypoints[leg - 1].view.position,
-                                              waypoints[leg].view.position));
+    largest = std::max(largest, distance(sample.position, waypoints[leg - 1].view.position,
+                                         waypoints[leg].view.position));
   }
   return largest;
 }

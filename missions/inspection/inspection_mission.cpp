@@ -15,7 +15,7 @@ using survey::inspection::incidence_rule;
 using survey::inspection::InspectionOptions;
 using survey::inspection::InspectionPlan;
 
-/// Plans the flight with waypoints, and states why if there is none.
+/// Plans the flight with waypoints, or records the reason if no such flight is possible.
 void plan_flight(const config::MissionSetup& setup, const InspectionSpace& space,
                  const std::stop_token& stop, InspectionMission& mission) {
   try {

@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -13,7 +12,6 @@
 #include "geometry/io/cloud_io.h"
 #include "geometry/io/file.h"
 #include "missions/package/package.h"
-#include "missions/package/settings.h"
 #include "missions/report/cloud_code.h"
 #include "missions/report/page.h"
 #include "missions/report/scene_outline.h"
@@ -37,7 +35,7 @@ Json inspection_verdict(const Json& summary) {
                   .lights = {}};
   verdict.lights.push_back({"Attainable points seen", "inspection.share_of_attainable", "share",
                             inspection.at("share_of_attainable"), meets_goal ? "green" : "amber",
-                            "green: the required share"});
+                            "green: the required fraction"});
   verdict.lights.push_back({"Points seen", "inspection.evaluation.incidence.share", "share",
                             inspection.at("evaluation").at("incidence").at("share")});
   verdict.lights.push_back({"Minimum clearance (verified)", "inspection.verified_clearance_m",
@@ -74,22 +72,10 @@ Json pieces_json(const fs::path& file) {
 
 }  // namespace
 
-bool is_inspection_summary(const Json& summary) {
-  return summary.is_object() && summary.value("kind", std::string()) == "inspection";
-}
-
 std::string inspection_page(const ResultFinder& results, std::size_t max_points) {
   const fs::path file = results(package::summary_name);
   const Json summary = read_results(file);
   try {
-    const config::MissionSetup setup =
-        package::mission_from_settings(summary.at("settings"), file.string());
-    std::optional<Eigen::Vector3d> pad;
-    if (const Json::json_pointer at("/flight/pad"); summary.contains(at)) {
-      const Json& position = summary.at(at);
-      pad = Eigen::Vector3d(position.at(0).get<double>(), position.at(1).get<double>(),
-                            position.at(2).get<double>());
-    }
     geometry::AttributedCloud structure;
     if (const fs::path cloud = results(structure_name); is_there(cloud)) {
       structure = geometry::read_cloud(cloud);
@@ -109,7 +95,7 @@ std::string inspection_page(const ResultFinder& results, std::size_t max_points)
         {"title", summary.value("mission", std::string())},
         {"verdict", inspection_verdict(summary)},
         {"summary", summary},
-        {"scene", scene_outline(setup.survey(), setup.scene(), pad)},
+        {"scene", scene_outline(summary, file.string())},
         {"palette", palette},
         {"piece", "image"},
         {"pieces", pieces_json(results(poses_name))},

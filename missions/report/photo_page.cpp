@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -14,7 +13,6 @@
 #include "flight/export/text.h"
 #include "geometry/io/file.h"
 #include "missions/package/package.h"
-#include "missions/package/settings.h"
 #include "missions/report/cloud_code.h"
 #include "missions/report/page.h"
 #include "missions/report/point_figures.h"
@@ -138,22 +136,10 @@ Json verdict_json(const Json& summary) {
 
 }  // namespace
 
-bool is_photo_summary(const Json& summary) {
-  return summary.is_object() && summary.value("kind", std::string()) == "photos";
-}
-
 std::string photo_page(const ResultFinder& results, std::size_t max_points) {
   const fs::path file = results(package::summary_name);
   const Json summary = read_results(file);
   try {
-    const config::MissionSetup setup =
-        package::mission_from_settings(summary.at("settings"), file.string());
-    std::optional<Eigen::Vector3d> pad;
-    if (const Json::json_pointer at("/flight/pad"); summary.contains(at)) {
-      const Json& position = summary.at(at);
-      pad = Eigen::Vector3d(position.at(0).get<double>(), position.at(1).get<double>(),
-                            position.at(2).get<double>());
-    }
     const SurfaceMap map = read_surface_map(results(surface_map_name));
     const double gsd = summary.at("photo").at("gsd_m").get<double>();
     const MapScale gsd_scale{0.0, 2.0 * gsd}, parallax_scale{0.0, 40.0}, count_scale{0.0, 10.0};
@@ -174,7 +160,7 @@ std::string photo_page(const ResultFinder& results, std::size_t max_points) {
         {"title", summary.value("mission", std::string())},
         {"verdict", verdict_json(summary)},
         {"summary", summary},
-        {"scene", scene_outline(setup.survey(), setup.scene(), pad)},
+        {"scene", scene_outline(summary, file.string())},
         {"maps",
          {{"gsd", scale("ground sampling distance", gsd_scale, "millimetres")},
           {"observations", scale("photos of a point", count_scale, "count")},

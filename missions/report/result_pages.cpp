@@ -43,8 +43,9 @@ std::vector<ResultPage> pages_in(const fs::path& folder) {
 /// Returns the report of summary.json: of a survey, a photo mission or an inspection.
 std::string summary_page(const ResultFinder& results, std::size_t max_points) {
   const nlohmann::ordered_json summary = read_results(results(package::summary_name));
-  if (is_photo_summary(summary)) return photo_page(results, max_points);
-  if (is_inspection_summary(summary)) return inspection_page(results, max_points);
+  const std::string kind = summary.is_object() ? summary.value("kind", std::string()) : "";
+  if (kind == "photos") return photo_page(results, max_points);
+  if (kind == "inspection") return inspection_page(results, max_points);
   return survey_report(results, max_points);
 }
 

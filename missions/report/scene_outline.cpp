@@ -7,9 +7,11 @@
 #include <utility>
 
 #include "flight/clearance/obstacles.h"
+#include "missions/package/settings.h"
 #include "missions/site_data/prior_text.h"
 #include "missions/site_data/site_priors.h"
 #include "missions/site_data/terrain.h"
+#include "missions/support/json_text.h"
 
 namespace skycap::missions::report {
 namespace {
@@ -119,6 +121,15 @@ Json scene_outline(const session::SurveyOptions& survey, const scene::SceneOptio
                  {"lidar", flight.capture.is_scanner}}}};
   if (!priors.empty()) outline["priors"] = std::move(priors);
   return outline;
+}
+
+Json scene_outline(const Json& summary, const std::string& name) {
+  const config::MissionSetup setup = package::mission_from_settings(summary.at("settings"), name);
+  std::optional<Eigen::Vector3d> pad;
+  if (const Json::json_pointer at("/flight/pad"); summary.contains(at)) {
+    pad = support::to_vector(summary.at(at));
+  }
+  return scene_outline(setup.survey(), setup.scene(), pad);
 }
 
 }  // namespace skycap::missions::report

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
@@ -18,5 +19,11 @@ namespace skycap::missions::report {
 nlohmann::ordered_json scene_outline(const session::SurveyOptions& survey,
                                      const scene::SceneOptions& scene,
                                      const std::optional<Eigen::Vector3d>& pad);
+
+/// Returns the outline for the mission and the pad in the summary of the file `name`. Throws
+/// nlohmann::json::exception if a value has the wrong type, and Error{bad_file} if the settings are
+/// invalid.
+nlohmann::ordered_json scene_outline(const nlohmann::ordered_json& summary,
+                                     const std::string& name);
 
 }  // namespace skycap::missions::report

@@ -53,7 +53,7 @@ void store_depths(const RayPacket& packet, const Limits& limits, std::ptrdiff_t 
   const FourFloats none = FourFloats{} + no_return;
   for (std::ptrdiff_t row = 0; row < packet_rows; ++row) {
     const auto hit = four<FourFloats>(packet.distance + row * packet_columns);
-    // A camera on a surface hits it at a distance of zero with either sign, which is no return.
+    // A camera that touches a surface hits it at a distance of +0 or -0. This is not a return.
     const FourFloats depth = (hit >= limits.min_depth) & (hit > 0.0F) ? hit : none;
     std::memcpy(depths + row * stride, &depth, sizeof depth);
   }

@@ -29,6 +29,7 @@
 #include "missions/inspection/inspection_mission.h"
 #include "missions/inspection/inspection_results.h"
 #include "missions/package/package.h"
+#include "tests/missions/inspection/block.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skycap::missions {
@@ -39,23 +40,6 @@ using survey::inspection::FlightSample;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
-
-constexpr const char* block_obj = R"(
-v -2 -2 0
-v 2 -2 0
-v 2 2 0
-v -2 2 0
-v -2 -2 5
-v 2 -2 5
-v 2 2 5
-v -2 2 5
-f 1 4 3 2
-f 5 6 7 8
-f 1 2 6 5
-f 2 3 7 6
-f 3 4 8 7
-f 4 1 5 8
-)";
 
 constexpr const char* block_yaml = R"(
 site: {latitude_deg: 51.7535, longitude_deg: -1.254, ellipsoid_height: 111.5, geoid_undulation: 46.7}

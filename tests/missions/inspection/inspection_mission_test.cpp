@@ -26,6 +26,7 @@
 #include "missions/inspection/flight_file.h"
 #include "missions/inspection/inspection_results.h"
 #include "missions/package/package.h"
+#include "tests/missions/inspection/block.h"
 #include "tests/support/complaint.h"
 #include "tests/support/temporary_folder.h"
 
@@ -35,23 +36,6 @@ namespace {
 using testing::EndsWith;
 using testing::HasSubstr;
 using testing_support::thrown_message;
-
-constexpr const char* block_obj = R"(
-v -2 -2 0
-v 2 -2 0
-v 2 2 0
-v -2 2 0
-v -2 -2 5
-v 2 -2 5
-v 2 2 5
-v -2 2 5
-f 1 4 3 2
-f 5 6 7 8
-f 1 2 6 5
-f 2 3 7 6
-f 3 4 8 7
-f 4 1 5 8
-)";
 
 constexpr const char* block_yaml = R"(
 sensor: {photo_camera: mavic_3e_wide}
