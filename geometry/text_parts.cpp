@@ -31,4 +31,11 @@ std::vector<std::string> split_words(std::string_view text) {
   return words;
 }
 
+std::string excerpt(std::string_view text) {
+  std::string result(text.substr(0, 40));
+  std::ranges::replace_if(
+      result, [](unsigned char c) { return c < 0x20 || c == 0x7F; }, ' ');
+  return result;
+}
+
 }  // namespace skycap::geometry

@@ -16,4 +16,7 @@ std::string_view trimmed(std::string_view text);
 /// Splits the text at sequences of spaces, tabs and line ends.
 std::vector<std::string> split_words(std::string_view text);
 
+/// Returns at most 40 bytes of the text for messages, with control characters as spaces.
+std::string excerpt(std::string_view text);
+
 }  // namespace skycap::geometry

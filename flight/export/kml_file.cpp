@@ -7,6 +7,7 @@
 #include "flight/export/kml_document.h"
 #include "flight/export/map_files.h"
 #include "geometry/angle.h"
+#include "geometry/text_parts.h"
 
 namespace skycap::flight {
 namespace {
@@ -211,7 +212,7 @@ class KmlChecker {
  private:
   void add_problem(const std::string& who, const char* has, const std::string& value,
                    const char* right) {
-    problems.push_back("\"" + who + "\" " + has + " \"" + value + "\"" + right);
+    problems.push_back("\"" + who + "\" " + has + " \"" + geometry::excerpt(value) + "\"" + right);
   }
 
   void check(pugi::xml_node mark) {

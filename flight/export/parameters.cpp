@@ -254,7 +254,7 @@ std::vector<Parameter> read_parameters(const std::string& text) {
     if (!parameter) {
       throw Error(
           ErrorKind::bad_file,
-          "line " + std::to_string(number) + " is \"" + line +
+          "line " + std::to_string(number) + " is \"" + geometry::excerpt(line) +
               "\"; it must be NAME,VALUE or the five tab-separated fields of QGroundControl");
     }
     parameters.push_back(*parameter);

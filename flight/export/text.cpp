@@ -61,7 +61,8 @@ std::optional<std::vector<double>> to_numbers(const std::vector<std::string>& fi
   for (const std::string& field : fields) {
     const std::optional<double> value = to_number(field);
     if (!value) {
-      problems.push_back(location + "has \"" + field + "\", which is not a number");
+      problems.push_back(location + "has \"" + geometry::excerpt(field) +
+                         "\", which is not a number");
       return std::nullopt;
     }
     values.push_back(*value);

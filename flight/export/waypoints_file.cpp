@@ -94,7 +94,8 @@ struct WaypointsParser {
     }
     for (const std::size_t whole : {2U, 3U, 11U}) {
       if (values[whole] != std::floor(values[whole]) || std::abs(values[whole]) > 1e5) {
-        problems.push_back(who + "has \"" + fields[whole] + "\"; it must be an integer");
+        problems.push_back(who + "has \"" + geometry::excerpt(fields[whole]) +
+                           "\"; it must be an integer");
         return;
       }
     }

@@ -44,7 +44,7 @@ class WpmlChecker {
     const std::string value = child_text(node, name);
     if (value.empty()) return add_problem("has no wpml:" + std::string(name));
     if (!values.contains(value)) {
-      add_problem("has wpml:" + std::string(name) + " \"" + value +
+      add_problem("has wpml:" + std::string(name) + " \"" + geometry::excerpt(value) +
                   "\", which is not a valid value");
     }
   }
@@ -134,7 +134,7 @@ class WpmlChecker {
     FilePoint point;
     point.datum = datum_;
     if (!longitude || !latitude || std::abs(*longitude) > 180.0 || std::abs(*latitude) > 90.0) {
-      add_problem("has coordinates \"" + location +
+      add_problem("has coordinates \"" + geometry::excerpt(location) +
                   "\"; they must be longitude,latitude in degrees");
     } else {
       point.longitude_deg = *longitude, point.latitude_deg = *latitude;

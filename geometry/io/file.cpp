@@ -35,6 +35,16 @@ std::string size_text(std::size_t bytes) {
                                        : std::to_string(bytes >> 20) + " MiB";
 }
 
+/// Returns the size of the last member, which the file's last four bytes state modulo 2^32
+/// (RFC 1952), or 0.
+std::size_t declared_size(std::string_view gzip) {
+  std::size_t size = 0;
+  for (std::size_t i = 0; i < 4 && i < gzip.size(); ++i) {
+    size = size << 8 | static_cast<std::uint8_t>(gzip[gzip.size() - 1 - i]);
+  }
+  return size;
+}
+
 std::string inflate_gzip(const fs::path& path, std::string_view bytes, std::size_t max_bytes) {
   z_stream stream{};
   constexpr int gzip_only = 16 + MAX_WBITS;
@@ -42,6 +52,7 @@ std::string inflate_gzip(const fs::path& path, std::string_view bytes, std::size
   if (start == Z_MEM_ERROR) throw std::bad_alloc();
   if (start != Z_OK) fail(path, "zlib cannot start");
   std::string inflated, chunk(1 << 20, '\0');
+  inflated.reserve(std::min(declared_size(bytes), max_bytes) + chunk.size());
   int status = Z_OK;
   while (status == Z_OK || (status == Z_STREAM_END && !bytes.empty())) {
     if (status == Z_STREAM_END) inflateReset(&stream);  // gzip files may be concatenated

@@ -18,6 +18,7 @@ using std::string_view;
 
 /// A line with more numbers than any point has lost its line ends.
 constexpr std::size_t max_columns = 200;
+constexpr std::size_t max_line = 1 << 16;  // bytes
 
 /// Line format of a file.
 struct Layout {
@@ -152,7 +153,12 @@ class TextCloud {
   string_view whole_line(string_view first) {
     const string_view rest = scanner_.remaining_line();
     const char* const end = rest.empty() ? first.data() + first.size() : rest.data() + rest.size();
-    return {first.data(), static_cast<std::size_t>(end - first.data())};
+    const auto size = static_cast<std::size_t>(end - first.data());
+    if (size > max_line) {
+      scanner_.fail(
+          "is longer than 64 KiB; a point cloud in text format must have one point per line");
+    }
+    return {first.data(), size};
   }
 
   void read_plain_point(string_view first) {

@@ -81,7 +81,7 @@ class TextScanner {
 
   /// Throws an Error about an unexpected word.
   [[noreturn]] void fail_on_word(std::string_view word, std::string_view what) const {
-    const std::string quoted = "'" + std::string(word.substr(0, 40)) + "'";
+    const std::string quoted = "'" + excerpt(word) + "'";
     if (has_decimal_comma(word)) {
       fail(quoted + " has a decimal comma; use decimal points");
     }
