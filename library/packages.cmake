@@ -23,8 +23,8 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "npm")
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "plans and simulates aerial surveys of buildings
-Decides where to look from next by the points measured so far, proves that
-every leg keeps its distance, and writes the flight for autopilots.")
+Selects the next view from the points measured so far, verifies the clearance
+of every leg, and writes missions for autopilots.")
 
 # Dependencies of programs that link the static libraries. Planners need only the first list.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libskycap-dev)
@@ -34,8 +34,8 @@ string(JOIN ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS libdraco-dev libeigen3
 string(JOIN ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS libceres-dev libembree-dev libfmt-dev
   libgeographiclib-dev libompl-dev libpng-dev libpugixml-dev libssl-dev libyaml-cpp-dev libzip-dev)
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "libraries of Skycap, for aerial surveys of buildings
-Planners, proofs of clearance, simulated sensors, and files that CMake finds
-them by. What the components beyond survey are linked with is recommended.")
+Planners, clearance verification and simulated sensors, with files for CMake's
+find_package. Packages for components other than survey are recommended.")
 
 # A module supports exactly one minor version of the Python interpreter.
 if(TARGET skycap_python)
@@ -49,8 +49,8 @@ if(TARGET skycap_python)
     ${CMAKE_CURRENT_SOURCE_DIR}/python3-skycap/postinst
     ${CMAKE_CURRENT_SOURCE_DIR}/python3-skycap/prerm)
   set(CPACK_COMPONENT_PYTHON_DESCRIPTION "aerial surveys of buildings, from Python
-Planners on arrays of numpy, whole surveys in simulation, laser scans piece
-by piece, proofs of clearance, and the evaluation of clouds.")
+Planners on NumPy arrays, simulated surveys, laser scans in parts, clearance
+verification, and the evaluation of point clouds.")
 endif()
 
 include(CPack)
