@@ -252,9 +252,18 @@ RouteOptions FlightOptions::route(const Vector3d& pad) const {
   options.conditions.cruise_speed = cruise_speed;
   options.conditions.reserve = reserve;
   options.conditions.longest_flight = longest_flight(required_vehicle());
-  options.returns = ReturnOptions{find_autopilots(required_vehicle()),
-                                  max_return_altitude(pad.z(), pad.z()), rally};
+  options.returns =
+      ReturnOptions{find_autopilots(required_vehicle()), max_return_altitude(pad.z(), pad.z()),
+                    rally, braking_before_return()};
   return options;
+}
+
+double FlightOptions::braking_before_return() const {
+  const Vehicle& flown = required_vehicle();
+  // DJI aircraft stop at their maximum acceleration, without a margin for position control.
+  return flown.autopilot == AutopilotType::dji
+             ? cruise_speed * cruise_speed / (2.0 * flown.mode.acceleration)
+             : braking_distance(flown.mode, cruise_speed);
 }
 
 double FlightOptions::rest_before() const {

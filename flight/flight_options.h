@@ -199,6 +199,8 @@ struct FlightOptions {
 
   RouteOptions route(const Eigen::Vector3d& pad) const;
 
+  /// Returns RtlProfile::braking at cruise speed [m].
+  double braking_before_return() const;
   /// Returns the hold time before or after a capture [s]: the configured value, or the sensor's
   /// minimum if that is longer.
   double rest_before() const;

@@ -94,6 +94,21 @@ double braking_distance_time(double distance, const LegLimits& limits, double je
   return time;
 }
 
+double braking_distance(const MissionMode& mode, double speed) {
+  // Linear up to the speed at which proportional control with a gain of 1/s reaches the maximum
+  // acceleration, then with this acceleration.
+  const double a = mode.acceleration;
+  return speed < a ? speed : 0.5 * a + speed * speed / (2.0 * a);
+}
+
+double return_overshoot(const MissionMode& mode) {
+  const double a = mode.acceleration, j = mode.jerk;
+  // The S-curve ends with a ramp of constant jerk, on which speed v remains for v / 3 sqrt(2 v /
+  // j). The difference to the braking distance is largest at v = 2 j, or above the ramp if it ends
+  // below that speed.
+  return a >= 2.0 * j ? 2.0 / 3.0 * j : 0.5 * a - a * a * a / (24.0 * j * j);
+}
+
 void MissionMode::validate(const std::string& owner) const {
   const auto require = [&](bool holds, const std::string& field, double value,
                            const std::string& right) {

@@ -39,6 +39,16 @@ struct MissionMode {
   void validate(const std::string& owner) const;
 };
 
+/// Returns the distance from the current position to ArduCopter's stopping point at `speed` [m/s],
+/// where a return starts (AC_PosControl.cpp, stopping_distance(), with PSC_POSXY_P 1) [m]. PX4 and
+/// DJI vehicles brake over a shorter distance.
+double braking_distance(const MissionMode& mode, double speed);
+
+/// Returns the maximum distance by which the stopping point of a return that begins shortly before
+/// a stop lies beyond this stop [m]. ArduCopter computes the stopping point from the speed only,
+/// whereas it is already braking with an S-curve (mode_rtl.cpp, AC_PosControl.cpp).
+double return_overshoot(const MissionMode& mode);
+
 /// Motion limits of one straight leg.
 struct LegLimits {
   double speed = 0.0;         ///< Maximum speed [m/s].

@@ -20,6 +20,7 @@ struct Requirement {
   const char* name;
   double min, max;
   double by_default;
+  const char* other_name = "";  ///< Name of the same parameter in other versions.
 };
 
 constexpr std::array ardupilot_requirements{
@@ -30,14 +31,15 @@ constexpr std::array ardupilot_requirements{
     Requirement{"RTL_ALT_FINAL", 0.0, 0.0, 0.0},
     Requirement{"RTL_ALT_FINAL_M", 0.0, 0.0, 0.0},
     Requirement{"RALLY_INCL_HOME", 1.0, 1.0, 1.0},
-    Requirement{"WPNAV_RADIUS", 5.0, 100.0 * ardupilot_waypoint_radius, 200.0},
-    Requirement{"WP_RADIUS_M", 0.05, ardupilot_waypoint_radius, 2.0},
+    Requirement{"WPNAV_RADIUS", 5.0, 100.0 * ardupilot_waypoint_radius, 200.0, "WP_RADIUS_M"},
+    // A missing radius is reported under the older name only.
+    Requirement{"WP_RADIUS_M", 0.05, ardupilot_waypoint_radius, ardupilot_waypoint_radius},
 };
 constexpr std::array px4_requirements{
     Requirement{"RTL_TYPE", 0.0, 0.0, 0.0},
     Requirement{"RTL_CONE_ANG", 0.0, 0.0, 45.0},
     Requirement{"NAV_ACC_RAD", 0.05, px4_landing_radius, 10.0},
-    Requirement{"NAV_MC_ALT_RAD", 0.05, px4_altitude_radius, 0.8},
+    Requirement{"NAV_MC_ALT_RAD", 0.05, acceptance_radius, 0.8},
 };
 
 std::span<const Requirement> requirements(AutopilotType autopilot) {
@@ -65,6 +67,10 @@ class ParameterWriter {
     comment("");
     comment("Mission \"" + plan_.name + "\": return altitude " + plain(returns_.height) +
             " m above take-off, verified at this altitude only.");
+    comment(is_px4_ ? "Verified for PX4 1.14 to 1.18." : "Verified for ArduCopter 4.1 to 4.7.");
+    if (is_px4_ && plan_.fence) {
+      comment("Do not use PX4 1.19 or later: its returns fly around the fence.");
+    }
     comment(
         "Order: load these parameters; restart the autopilot if the ground station requests it; "
         "read back");
@@ -159,11 +165,20 @@ class ParameterWriter {
     constexpr int altitude = 1, polygon = 4;
     comment("Fence: the polygons are in the .plan file. Breach: return. Returns are verified from");
     comment("points of the route only, not from outside the fence.");
+    // ArduCopter returns at FENCE_ALT_MAX - FENCE_MARGIN if the return altitude is higher.
+    constexpr double min_margin = 1.0, usual_margin = 2.0;
+    const double margin =
+        std::min(usual_margin, std::floor(ceiling()) - std::ceil(returns_.height));
+    const bool has_altitude = ceiling() > 0.0 && margin >= min_margin;
+    if (ceiling() > 0.0 && !has_altitude) {
+      comment(
+          "No maximum altitude: less than 1 m above the return altitude, it would lower returns.");
+    }
     set("FENCE_ENABLE", 1);
-    set("FENCE_TYPE", polygon + (ceiling() > 0.0 ? altitude : 0));
+    set("FENCE_TYPE", polygon + (has_altitude ? altitude : 0));
     set("FENCE_ACTION", 1);
-    set("FENCE_MARGIN", 2);
-    if (ceiling() > 0.0) set("FENCE_ALT_MAX", std::floor(ceiling()));
+    set("FENCE_MARGIN", has_altitude ? margin : usual_margin);
+    if (has_altitude) set("FENCE_ALT_MAX", std::floor(ceiling()));
   }
 
   void write_px4() {
@@ -174,7 +189,8 @@ class ParameterWriter {
     real("RTL_DESCEND_ALT", 10);
     real("RTL_LAND_DELAY", 0);
     real("NAV_ACC_RAD", px4_landing_radius);
-    real("NAV_MC_ALT_RAD", px4_altitude_radius);
+    // Stops and the end of the take-off, which PX4 leaves within this distance, count as exact.
+    real("NAV_MC_ALT_RAD", acceptance_radius);
     comment("Speeds [m/s], accelerations [m/s^2] and jerk [m/s^3]");
     real("MPC_XY_CRUISE", std::max(3.0, plan_.conditions.cruise_speed));
     const MissionMode& mode = plan_.vehicle.mode;
@@ -186,7 +202,7 @@ class ParameterWriter {
     comment("The mission sets the headings; views are captured within 1 degree of their heading");
     set("MPC_YAW_MODE", 0);
     real("MIS_YAW_ERR", 1);
-    real("MIS_YAW_TMT", 10);
+    real("MIS_YAW_TMT", -1);  // A timeout would accept waypoints without their heading.
     comment("Loss of the link to the pilot or to the ground station: return");
     set("NAV_RCL_ACT", 2);
     set("NAV_DLL_ACT", 2);
@@ -278,6 +294,7 @@ Problems return_problems(const std::vector<Parameter>& parameters, AutopilotType
   Problems problems;
   for (const Requirement& required : requirements(autopilot)) {
     const Parameter* found = find(parameters, required.name);
+    if (found == nullptr && find(parameters, required.other_name) != nullptr) continue;
     const double value = found == nullptr ? required.by_default : found->value;
     if (value >= required.min && value <= required.max) continue;
     problems.push_back(std::string(required.name) + " is " + plain(value) + "; it must be " +

@@ -8,8 +8,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// ArduCopter cuts the top corner within WP_RADIUS. PX4 ends its climb within NAV_MC_ALT_RAD and
-// starts its descent within NAV_ACC_RAD.
+// ArduCopter cuts the top corner within ardupilot_corner. PX4 ends its climb within NAV_MC_ALT_RAD
+// and starts its descent within NAV_ACC_RAD.
 
 /// Switching distances of DJI vehicles by their own estimate [m]. Within 20 or 50 m, depending on
 /// the model, they fly home at their current altitude. Within 5 m they land on the spot.
@@ -57,7 +57,7 @@ std::vector<Vector3d> return_path(const RtlProfile& rtl_profile, const Vector3d&
   std::vector<Vector3d> path{position};
   const AutopilotType autopilot = rtl_profile.autopilots.front();
   if (autopilot == AutopilotType::ardupilot) {
-    climb_and_fly(at_height(landing, top), random.between(0.0, ardupilot_waypoint_radius), path);
+    climb_and_fly(at_height(landing, top), random.between(0.0, ardupilot_corner), path);
   } else if (autopilot == AutopilotType::px4) {
     const double end = std::max(position.z(), top - random.between(0.0, px4_altitude_radius));
     const double lateral = random.between(0.0, std::min(px4_landing_radius, away));

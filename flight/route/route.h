@@ -73,6 +73,7 @@ struct ReturnOptions {
   std::vector<AutopilotType> autopilots;  ///< Autopilots whose returns must be verified.
   double max_height = 0.0;  ///< Maximum height z for the search of a return altitude [m].
   std::vector<Eigen::Vector3d> rally{};  ///< Alternative landing points on the ground.
+  double braking = 0.0;                  ///< See RtlProfile::braking [m].
 };
 
 struct RouteOptions {

@@ -51,7 +51,8 @@ RtlProfile planning_rtl_profile(const RouteOptions& options, double top) {
                          .level = std::max(ground + std::floor(asked.max_height - ground), top),
                          .landings = {options.takeoff},
                          .landing_climb = options.takeoff_climb,
-                         .reserve = reserve};
+                         .reserve = reserve,
+                         .braking = asked.braking};
   rtl_profile.landings.insert(rtl_profile.landings.end(), asked.rally.begin(), asked.rally.end());
   return rtl_profile;
 }

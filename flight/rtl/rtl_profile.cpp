@@ -17,14 +17,15 @@ struct AutopilotTraits {
   double lands_at_once = 0.0;   ///< Distance below which it may land on the spot.
 };
 
-/// Tolerance for DJI's switching distances [m]. The vehicle measures them with an error and from
-/// where it has come to rest.
+/// Minimum tolerance for DJI's switching distances [m]: the braking distance, plus the error with
+/// which vehicles measure their position.
 constexpr double dji_tolerance = 3.0;
+constexpr double dji_position_error = 0.3;
 
 constexpr AutopilotTraits autopilot_traits(AutopilotType autopilot) {
   switch (autopilot) {
     case AutopilotType::ardupilot:
-      return {.level_below = ardupilot_waypoint_radius};
+      return {.level_below = ardupilot_corner};
     case AutopilotType::px4:
       return {.level_below = px4_altitude_radius, .landing_radius = px4_landing_radius};
     case AutopilotType::dji:
@@ -52,8 +53,8 @@ double distance_over_ground(const Vector3d& a, const Vector3d& b) {
 
 Vector3d at_height(const Vector3d& position, double z) { return {position.x(), position.y(), z}; }
 
-/// Maximum error of the autopilot's own distance estimate when it selects the nearest landing point
-/// [m].
+/// Minimum tolerance when the autopilot selects the nearest landing point [m]. It covers the error
+/// of the autopilot's own distance estimate.
 constexpr double choice_tolerance = 10.0;
 
 /// Returns the landing points that are nearest, or may appear nearest, from a position within
@@ -67,7 +68,8 @@ std::vector<Vector3d> landings_near(const RtlProfile& rtl_profile, const Vector3
   std::vector<Vector3d> chosen;
   for (const Vector3d& landing : rtl_profile.landings) {
     const double surplus = distance_over_ground(position, landing) - nearest;
-    if (surplus <= 2.0 * reach + choice_tolerance) chosen.push_back(landing);
+    const double tolerance = std::max(choice_tolerance, 2.0 * rtl_profile.braking);
+    if (surplus <= 2.0 * reach + tolerance) chosen.push_back(landing);
   }
   return chosen;
 }
@@ -102,7 +104,8 @@ std::vector<ReturnSegment> return_segments(const RtlProfile& rtl_profile, const 
   for (const Vector3d& landing : landings_near(rtl_profile, position, around)) {
     segments.push_back(
         {{at_height(position, level), at_height(landing, level)}, spread, ReturnPart::level});
-    const double nearest = distance_over_ground(position, landing) - around;
+    const double nearest = distance_over_ground(position, landing) - around -
+                           std::max(0.0, rtl_profile.braking + dji_position_error - dji_tolerance);
     if (nearest < traits.level_as_it_is) {
       segments.push_back(
           {{position, at_height(landing, position.z())}, 0.0, ReturnPart::level_as_it_is});

@@ -5,17 +5,21 @@
 /// descend. They differ in the following details.
 ///
 /// ArduCopter (mode_rtl.cpp, with RTL_CONE_SLOPE 0 and RTL_CLIMB_MIN 0) treats the corner between
-/// climb and level flight as a fast waypoint. It cuts this corner within WP_RADIUS, 2 m. Among
-/// several landing points it selects the one closest to the start of the return.
+/// climb and level flight as a fast waypoint. Versions 4.1 to 4.5 keep only the middle of this
+/// corner within WP_RADIUS (SCurve.cpp). With WP_RADIUS 0.5 m, every version stays on the climb or
+/// within 2 m below the return altitude. Among several landing points it selects the one closest to
+/// the start of the return.
 ///
-/// PX4 (rtl.cpp, rtl_direct.cpp, with RTL_CONE_ANG 0) flies level up to NAV_MC_ALT_RAD, 0.8 m,
-/// below the return altitude. It may descend within NAV_ACC_RAD, set to 1 m, of the landing point.
+/// PX4 (rtl.cpp, rtl_direct.cpp, with RTL_CONE_ANG 0) flies level up to NAV_MC_ALT_RAD, 0.8 m by
+/// default, below the return altitude. It may descend within NAV_ACC_RAD, set to 1 m, of the
+/// landing point.
 ///
 /// DJI (manuals, chapters "RTH") climbs only if farther than 50 m from home (older models 20 m).
 /// Closer, it flies home level at its current altitude, and within 5 m it lands on the spot.
 /// Between 5 and 50 m both variants must be free.
 ///
-/// For the required settings see docs/reference/route-formats.md, "Return: parameters per
+/// For versions and sources see docs/reference/autopilots.md, for the required settings
+/// docs/reference/route-formats.md, "Return: parameters per
 /// autopilot".
 #pragma once
 
@@ -31,9 +35,12 @@
 namespace skycap::flight {
 
 /// Settings that the law assumes [m]. Parameter files set them, and checks require them.
-inline constexpr double ardupilot_waypoint_radius = 2.0;  ///< WP_RADIUS_M.
+inline constexpr double ardupilot_waypoint_radius = 0.5;  ///< WP_RADIUS_M.
 inline constexpr double px4_altitude_radius = 0.8;        ///< NAV_MC_ALT_RAD.
 inline constexpr double px4_landing_radius = 1.0;         ///< NAV_ACC_RAD.
+
+/// Maximum distance of ArduCopter's level flight below the return altitude near the climb [m].
+inline constexpr double ardupilot_corner = 2.0;
 
 /// Maximum distance from home at which DJI vehicles may land on the spot: 5 m by their own
 /// estimate, plus tolerance [m].
@@ -51,6 +58,9 @@ struct RtlProfile {
   /// Used in planning, so that no leg ends exactly where the proof becomes sensitive to its
   /// subdivision.
   double reserve = 0.0;
+  /// Maximum distance that the vehicle brakes between the autopilot's decisions, for example on the
+  /// landing point, and the start of the return [m].
+  double braking = 0.0;
 };
 
 enum class ReturnPart { climb, level, level_as_it_is, descent, landing };

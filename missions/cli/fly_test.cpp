@@ -124,7 +124,8 @@ class TestedPackage {
     flight::RtlProfile rtl_profile{.autopilots = {autopilot},
                                    .level = pad.z() + stated->height,
                                    .landings = {pad},
-                                   .landing_climb = flight().climb()};
+                                   .landing_climb = flight().climb(),
+                                   .braking = flight().braking_before_return()};
     const std::vector<Eigen::Vector3d>& rally = flight().rally;
     if (autopilot != AutopilotType::dji)
       rtl_profile.landings.insert(rtl_profile.landings.end(), rally.begin(), rally.end());

@@ -234,6 +234,20 @@ void check_flight(const MissionDocument& document) {
                                             short_text(budget.total() - budget.margin) +
                                             " m; raise it or lower the errors");
   }
+  const flight::Vehicle& vehicle = flight.required_vehicle();
+  const double overshoot = flight::return_overshoot(vehicle.mode);
+  if (vehicle.autopilot == flight::AutopilotType::ardupilot &&
+      budget.tracking_error + std::max(0.0, budget.margin) < overshoot) {
+    document.reject(
+        "flight.clearance",
+        "must be at least " +
+            short_text(std::ceil(100.0 * (budget.total() - budget.tracking_error - budget.margin +
+                                          overshoot)) /
+                       100.0) +
+            " m, because a return of ArduCopter that begins shortly before a stop passes it by up "
+            "to " +
+            short_text(std::ceil(100.0 * overshoot) / 100.0) + " m; raise it");
+  }
   check_views(document);
   if (flight.style == flight::FlightStyle::pass && document.sensor.options.settle > 0.0) {
     document.reject("flight.style",

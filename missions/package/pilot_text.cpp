@@ -101,6 +101,11 @@ std::vector<std::string> px4_steps(const Part& part) {
         "Read back the return altitude: RTL_RETURN_ALT {} m above take-off ({}), and RTL_CONE_ANG "
         "0.",
         flight::return_altitude_text(part.route.returns->height), verified));
+    steps.push_back(fmt::format(
+        "Before the first flight near obstacles, fly a test mission in free space. Check that the "
+        "logged track stays within {} m of the legs (flight.tracking_error); in a simulator, PX4 "
+        "left them by up to 3 m.",
+        support::short_text(part.route.options.clearance.tracking_error)));
   }
   const std::string plan = join_names(part.files, ".plan");
   const std::string extras = plan_extras(part);

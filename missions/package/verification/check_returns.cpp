@@ -31,7 +31,8 @@ ReturnCheck check_returns(const std::filesystem::path& file,
   const double ground = options.pad(options.airspace.base).z();
   flight::RtlProfile rtl_profile{.autopilots = {*autopilot},
                                  .landings = {{points[0].x(), points[0].y(), ground}},
-                                 .landing_climb = options.climb()};
+                                 .landing_climb = options.climb(),
+                                 .braking = options.braking_before_return()};
   if (*autopilot != AutopilotType::dji) {
     const std::vector<Vector3d>& rally = options.rally;
     rtl_profile.landings.insert(rtl_profile.landings.end(), rally.begin(), rally.end());

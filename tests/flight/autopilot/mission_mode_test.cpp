@@ -216,6 +216,34 @@ TEST(ArduCopter, PredictsLoggedFlightTimesWithinFivePercent) {
   }
 }
 
+/// Returns the maximum of the braking distance minus the distance left on the final ramps of an
+/// S-curve that brakes from 20 m/s, by numerical integration backwards from the stop.
+double integrated_overshoot(double acceleration, double jerk) {
+  constexpr double step = 1e-4;
+  MissionMode mode;
+  mode.acceleration = acceleration;
+  double speed = 0.0, left = 0.0, most = 0.0;
+  for (double time = 0.0; speed < 20.0; time += step) {
+    left += speed * step;
+    speed += std::min(acceleration, jerk * time) * step;
+    most = std::max(most, braking_distance(mode, speed) - left);
+  }
+  return most;
+}
+
+TEST(ArduCopter, PassesStopsWhenAReturnBegins) {
+  MissionMode mode;
+  mode.acceleration = 2.5;
+  EXPECT_DOUBLE_EQ(braking_distance(mode, 2.0), 2.0);
+  EXPECT_DOUBLE_EQ(braking_distance(mode, 4.0), 1.25 + 3.2);
+  for (const auto& [acceleration, jerk] :
+       {std::pair{2.5, 1.0}, {3.0, 6.0}, {1.0, 1.0}, {5.0, 2.5}, {2.0, 20.0}}) {
+    mode.acceleration = acceleration, mode.jerk = jerk;
+    EXPECT_NEAR(return_overshoot(mode), integrated_overshoot(acceleration, jerk), 0.01)
+        << acceleration << ' ' << jerk;
+  }
+}
+
 TEST(MissionMode, RejectsZeroLandingSpeed) {
   MissionMode mode;
   mode.landing_speed = 0.0;

@@ -120,15 +120,46 @@ TEST(Parameters, RoundTripThroughFile) {
 }
 
 TEST(Parameters, ReportSettingsThatChangeTheReturn) {
-  EXPECT_THAT(return_problems({{"RTL_ALT", 4700}, {"RTL_CONE_SLOPE", 0}}, AutopilotType::ardupilot),
-              IsEmpty());
+  for (const Parameter& radius : {Parameter{"WPNAV_RADIUS", 50}, {"WP_RADIUS_M", 0.5}}) {
+    EXPECT_THAT(return_problems({{"RTL_ALT", 4700}, {"RTL_CONE_SLOPE", 0}, radius},
+                                AutopilotType::ardupilot),
+                IsEmpty());
+  }
   EXPECT_THAT(return_problems({{"RTL_ALT", 4700}}, AutopilotType::ardupilot),
-              ElementsAre("RTL_CONE_SLOPE is 3; it must be 0"));
-  EXPECT_THAT(return_problems({{"RTL_ALT", 4700}, {"RTL_ALT_M", 4700}, {"RTL_CONE_SLOPE", 0}},
-                              AutopilotType::ardupilot),
-              ElementsAre("RTL_ALT is 4700 cm and RTL_ALT_M 4700 m; they must be equal"));
+              ElementsAre("RTL_CONE_SLOPE is 3; it must be 0",
+                          "WPNAV_RADIUS is 200; it must be from 5 to 50"));
+  EXPECT_THAT(
+      return_problems(
+          {{"RTL_ALT", 4700}, {"RTL_ALT_M", 4700}, {"RTL_CONE_SLOPE", 0}, {"WP_RADIUS_M", 0.5}},
+          AutopilotType::ardupilot),
+      ElementsAre("RTL_ALT is 4700 cm and RTL_ALT_M 4700 m; they must be equal"));
   EXPECT_THAT(return_problems({{"RTL_RETURN_ALT", 47}, {"RTL_CONE_ANG", 0}}, AutopilotType::px4),
-              ElementsAre("NAV_ACC_RAD is 10; it must be from 0.05 to 1"));
+              ElementsAre("NAV_ACC_RAD is 10; it must be from 0.05 to 1",
+                          "NAV_MC_ALT_RAD is 0.8; it must be from 0.05 to 0.3"));
+}
+
+// mode_rtl.cpp: the return altitude is at most FENCE_ALT_MAX - FENCE_MARGIN.
+TEST(Parameters, KeepTheArduPilotReturnBelowTheFence) {
+  FlightPlan plan = make_plan("generic_ardupilot");
+  const double ground = plan.pad.z();
+  for (const double ceiling : {47.2, 48.0, 48.9, 49.0, 50.5, 60.0}) {
+    plan.fence->ceiling = ground + ceiling;
+    const auto values = read_as_mission_planner(write_parameters(plan));
+    const bool has_altitude = (static_cast<int>(values.at("FENCE_TYPE")) & 1) != 0;
+    EXPECT_EQ(has_altitude, ceiling >= 48.0) << ceiling;
+    EXPECT_EQ(values.contains("FENCE_ALT_MAX"), has_altitude);
+    if (!has_altitude) continue;
+    EXPECT_LE(values.at("FENCE_ALT_MAX"), ceiling);
+    EXPECT_GE(values.at("FENCE_MARGIN"), 1.0);
+    EXPECT_GE(values.at("FENCE_ALT_MAX") - values.at("FENCE_MARGIN"), values.at("RTL_ALT_M"));
+  }
+}
+
+// mission_block.cpp accepts waypoints without their heading if MIS_YAW_TMT is positive.
+TEST(Parameters, LetPx4ReachStopsExactly) {
+  const auto values = read_as_qgroundcontrol(write_parameters(make_plan("generic")));
+  EXPECT_LT(values.at("MIS_YAW_TMT"), 0.0);
+  EXPECT_LE(values.at("NAV_MC_ALT_RAD"), acceptance_radius);
 }
 
 TEST(Parameters, RejectInvalidLine) {

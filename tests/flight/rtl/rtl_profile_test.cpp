@@ -36,7 +36,7 @@ void expect_line(const ReturnSegment* segment, const Vector3d& from, const Vecto
 }
 
 // Calculated by hand from mode_rtl.cpp with RTL_ALT 40, RTL_CONE_SLOPE 0: climb at the position,
-// level flight at 40. The corner is cut by at most WP_RADIUS = 2, so the band is 38 to 40.
+// level flight at 40. The corner is cut by at most 2 m, so the band is 38 to 40.
 TEST(RtlProfile, HasClimbAndTwoMetreLevelBandForArduCopter) {
   const auto segments = return_segments(make_rtl_profile({AutopilotType::ardupilot}), {30, 40, 12});
   ASSERT_THAT(segments, SizeIs(2));
@@ -98,6 +98,21 @@ TEST(RtlProfile, UsesNearestLandingOrBothWhenAmbiguous) {
               SizeIs(3));  // distances 48 and 52 m differ by less than 10 m
   EXPECT_THAT(return_segments(rtl_profile, {30, 0, 10}, 20.0),
               SizeIs(3));  // from positions within 20 m, the other landing may be closer
+}
+
+// The autopilot decides before it brakes: 12 m from the start, the other landing is as close.
+TEST(RtlProfile, CoversDecisionsBeforeBraking) {
+  RtlProfile rtl_profile = make_rtl_profile({AutopilotType::ardupilot});
+  rtl_profile.landings.emplace_back(100, 0, 3);
+  EXPECT_THAT(return_segments(rtl_profile, {62, 0, 10}), SizeIs(2));
+  rtl_profile.braking = 12.0;
+  EXPECT_THAT(return_segments(rtl_profile, {62, 0, 10}), SizeIs(3));
+  EXPECT_THAT(return_segments(rtl_profile, {63, 0, 10}), SizeIs(2));
+
+  RtlProfile dji = make_rtl_profile({AutopilotType::dji});
+  dji.braking = 7.7;
+  EXPECT_NE(find(return_segments(dji, {57.9, 0, 12}), ReturnPart::level_as_it_is), nullptr);
+  EXPECT_EQ(find(return_segments(dji, {58.1, 0, 12}), ReturnPart::level_as_it_is), nullptr);
 }
 
 /// Returns the distance of the points of `segment` from the nearest segment of the same part. Ends
