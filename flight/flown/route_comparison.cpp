@@ -333,10 +333,11 @@ class Comparison {
       legs[k].flown_fraction = std::min(1.0, flown[k] / total[k]);
       legs[k].is_flown = legs[k].flown_fraction >= min_flown_fraction;
     }
-    // A flight that leaves a leg early may pass half of it. A flown leg is followed to its end.
+    // A flight that leaves a leg early may pass half of it. A flown leg is followed from station to
+    // station; a log may begin and end in the air.
     for (std::size_t j = 0; j < pieces_.size(); ++j) {
-      const bool is_end = j + 1 == pieces_.size() || pieces_[j + 1].leg != pieces_[j].leg;
-      const bool is_begin = j == 0 || pieces_[j - 1].leg != pieces_[j].leg;
+      const bool is_end = j + 1 < pieces_.size() && pieces_[j + 1].leg != pieces_[j].leg;
+      const bool is_begin = j > 0 && pieces_[j - 1].leg != pieces_[j].leg;
       if ((is_end || is_begin) && !is_flown[j]) legs[pieces_[j].leg].is_flown = false;
     }
     for (std::size_t k = 0; k < legs.size(); ++k) {
