@@ -43,10 +43,15 @@ inline constexpr double min_state_interval = 0.1;
 /// Minimum time between two logged positions that is reported as a gap [s].
 inline constexpr double min_log_gap = 3.0;
 
-/// Reads a log: ArduPilot dataflash (.bin), PX4 ULog (.ulg), TUM trajectory (.tum, .txt), table of
-/// DJI photos (.mrk), CSV table with the columns latitude and longitude, trajectory written by
-/// Skycap (.csv), GPX track (.gpx) or subtitles of DJI videos (.srt). The kind is determined by the
-/// content, text also by the extension.
+/// Reads a log. These kinds are supported:
+///
+/// - .bin: ArduPilot dataflash log
+/// - .ulg: PX4 ULog
+/// - .mrk: table of DJI photos
+/// - .csv: table with the columns latitude, longitude and a height, or a trajectory of Skycap
+/// - .gpx: track
+/// - .srt: subtitles of DJI videos
+/// - .tum, .txt: TUM trajectory of the camera
 ///
 /// Skips damaged data and reports it in `warnings`. Throws Error{bad_file} with the file name if
 /// the file has a different kind or contains no position. Encrypted flight records of DJI are

@@ -59,9 +59,10 @@ void parse_in_pieces(std::istream& stream,
 /// MNT, and captures from CAM (otherwise TRIG).
 FlownLog read_dataflash_track(std::istream& stream);
 
-/// Positions come from vehicle_global_position (otherwise vehicle_local_position or the receiver),
-/// headings from vehicle_attitude, the direction of the camera from gimbal_device_attitude_status
-/// or mount_orientation, and captures from camera_capture (otherwise camera_trigger).
+/// Positions come from vehicle_global_position, otherwise from vehicle_local_position or the
+/// receiver. Headings come from vehicle_attitude, the direction of the camera from
+/// gimbal_device_attitude_status or mount_orientation. Captures come from camera_capture, otherwise
+/// from camera_trigger.
 FlownLog read_ulog_track(std::istream& stream);
 
 FlownLog read_tum_track(const std::string& text);

@@ -2,11 +2,11 @@
 /// were not flown, and captures that were made or missed.
 ///
 /// Method: the planned path is divided into pieces. A monotone alignment assigns each position of
-/// the track to a piece, such that the sum of squared distances is minimal (dynamic programming, as
-/// in dynamic time warping: Sakoe and Chiba, 1978). Pieces may be skipped at a small cost, and
-/// distances beyond the maximum deviation have a constant cost, so that detours and omitted legs do
-/// not distort the assignment of the rest. Captures are aligned in the same manner, by position and
-/// viewing direction.
+/// the track to a piece. It minimises the sum of squared distances by dynamic programming, as in
+/// dynamic time warping (Sakoe and Chiba, 1978). Pieces may be skipped at a small cost, and
+/// distances beyond the maximum deviation have a constant cost. Detours and omitted legs therefore
+/// do not distort the assignment of the rest. Captures are aligned in the same manner, by position
+/// and viewing direction.
 #pragma once
 
 #include <cstddef>
