@@ -331,7 +331,9 @@ class Comparison {
     }
     for (std::size_t k = 0; k < legs.size(); ++k) {
       legs[k].flown_fraction = std::min(1.0, flown[k] / total[k]);
-      legs[k].is_flown = legs[k].flown_fraction >= min_flown_fraction;
+      // A log may begin in the air, above the take-off point.
+      const bool is_first = k == 0 && legs.size() > 1;
+      legs[k].is_flown = is_first || legs[k].flown_fraction >= min_flown_fraction;
     }
     // A flight that leaves a leg early may pass half of it. A flown leg is followed from station to
     // station; a log may begin and end in the air.

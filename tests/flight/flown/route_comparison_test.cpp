@@ -128,6 +128,18 @@ TEST(RouteComparison, FindsTheEndOfAnAbortedFlight) {
   }
 }
 
+TEST(RouteComparison, AcceptsLogsThatBeginInTheAir) {
+  const std::vector<Vector3d> points = stations();
+  const PlannedFlight plan = make_plan(points);
+  // The log begins 3 m before the first station, which is 14 m from the take-off point.
+  std::vector<Vector3d> flown = points;
+  flown.front() = points[1] + 3.0 * (points[0] - points[1]).normalized();
+  const RouteComparison found =
+      compare_route(plan, make_track(fly_polyline(flown, all_captures()), Vector3d::Zero()), {});
+  EXPECT_LT(found.legs[0].flown_fraction, 0.5);
+  for (const LegComparison& leg : found.legs) EXPECT_TRUE(leg.is_flown);
+}
+
 /// Both directions of the same path are different legs.
 TEST(RouteComparison, DistinguishesLegsOverTheSamePath) {
   const std::vector<Vector3d> points{{0, 0, 10}, {40, 0, 10}, {0, 0, 10}, {0, 30, 10}};
