@@ -290,6 +290,7 @@ AREAS = [  # (part of the path, title of the messages); the first match is used
     (r"missions/scan", "Scans"),
     (r"missions/batch|flight/district", "Campaigns and districts"),
     (r"missions/package/fleet|flight/fleet", "Several vehicles"),
+    (r"flight/flown|missions/comparison", "`compare`"),
     (r"flight/calibration", "`calibrate`"),
     (r"flight/interpreter", "Checking a route file"),
     (r"flight/(export|link)", "Route files"),

@@ -18,6 +18,7 @@
 #include "missions/cli/build_text.h"
 #include "missions/cli/command_options.h"
 #include "missions/cli/commands.h"
+#include "missions/cli/compare.h"
 #include "missions/cli/completion.h"
 #include "missions/cli/printable.h"
 #include "missions/cli/rewrite.h"
@@ -401,6 +402,7 @@ int parse_and_run(const std::vector<std::string>& arguments, Console console) {
     add_export(app, console, action);
     add_fly_test(app, console, action);
     add_calibrate(app, console, action);
+    add_compare(app, console, action);
     add_evaluate(app, console, action);
     add_reconstruct(app, console, action);
     add_model(app, console, action);

@@ -18,6 +18,8 @@ ALIASES = {"flight.fleet.vehicles[].sorties[]": "flight.route.sorties[]",
            "flight.written[].surface": "surface", "flight.written[].targets": "targets"}
 # Maps whose keys are names of parts or settings. Their fields are not listed individually.
 MAPS = ("settings", "planning_time_parts_s", "per_view[].planning_time_parts_s")
+# Objects of compare.json with the fields of summary.json.
+MAPS += ("coverage.surface", "coverage.planned", "coverage.flown", "coverage.patched")
 
 TEAPOT = """
 scene: {model: 'builtin:teapot', longest_side: 10.0}
@@ -111,6 +113,10 @@ def documents(program, folder):
         yield "summary.json", (folder / name / "summary.json").read_text(encoding="utf-8")
     run(program, folder, "fly-test", "fleet", "--flights", "2", "--returns", "2", "--quiet")
     yield "fly_test.json", (folder / "fleet" / "fly_test.json").read_text(encoding="utf-8")
+    flown = (folder / "target" / "mission.csv").read_text(encoding="utf-8").splitlines(True)
+    (folder / "aborted.csv").write_text("".join(flown[:len(flown) // 2]), encoding="utf-8")
+    run(program, folder, "compare", "target", "aborted.csv", "--out", "compared", "--quiet")
+    yield "compare.json", (folder / "compared" / "compare.json").read_text(encoding="utf-8")
     yield "evaluation.json", run(program, folder, "evaluate", "--cloud", "SEE++/cloud.ply",
                                  "--model", "SEE++.yaml", "--json", "--quiet")
 

@@ -4,6 +4,7 @@
 #include "flight/calibration/flight_log.h"
 #include "flight/export/export.h"
 #include "flight/export/parameters.h"
+#include "flight/flown/flown_track.h"
 #include "flight/interpreter/interpret.h"
 #include "geometry/pose/world.h"
 #include "missions/config/vehicle_reader.h"
@@ -78,6 +79,23 @@ int run_log(const char* name, const std::uint8_t* bytes, std::size_t size) {
   });
 }
 
+/// Reads the log of a flight and places it in the frame of a mission.
+int run_flown(const char* name, const std::uint8_t* bytes, std::size_t size) {
+  return run_reader(name, [&] {
+    const auto log = flight::read_flown_log(file_with(name, bytes_to_string(bytes, size)));
+    const auto track = flight::place_track(log, site, true, {0, 0, 0}, {});
+    double last = -std::numeric_limits<double>::infinity();
+    for (const flight::TrackState& state : track.states) {
+      require(state.time >= last, "a track that goes back in time");
+      require(state.position.allFinite(), "a position that is not finite");
+      last = state.time;
+    }
+    for (const flight::TrackState& state : track.captures) {
+      require(state.position.allFinite(), "a capture at a position that is not finite");
+    }
+  });
+}
+
 constexpr Reader readers[] = {
     {"plan", [](const std::uint8_t* b, std::size_t n) { return run_route("m.plan", b, n); }},
     {"waypoints",
@@ -93,6 +111,14 @@ constexpr Reader readers[] = {
      [](const std::uint8_t* b, std::size_t n) { return run_scan_route("views.csv", b, n); }},
     {"dataflash", [](const std::uint8_t* b, std::size_t n) { return run_log("log.bin", b, n); }},
     {"log", [](const std::uint8_t* b, std::size_t n) { return run_log("log.csv", b, n); }},
+    {"flown_dataflash",
+     [](const std::uint8_t* b, std::size_t n) { return run_flown("log.bin", b, n); }},
+    {"flown_ulog", [](const std::uint8_t* b, std::size_t n) { return run_flown("log.ulg", b, n); }},
+    {"flown_csv", [](const std::uint8_t* b, std::size_t n) { return run_flown("log.csv", b, n); }},
+    {"flown_mrk", [](const std::uint8_t* b, std::size_t n) { return run_flown("log.mrk", b, n); }},
+    {"flown_gpx", [](const std::uint8_t* b, std::size_t n) { return run_flown("log.gpx", b, n); }},
+    {"flown_srt", [](const std::uint8_t* b, std::size_t n) { return run_flown("log.srt", b, n); }},
+    {"flown_tum", [](const std::uint8_t* b, std::size_t n) { return run_flown("log.tum", b, n); }},
     {"parameters", run_parameters},
 };
 

@@ -80,12 +80,15 @@ Modules architecture() {
       {"flight/clearance", "flight/autopilot", "flight/motion", "flight/export"});
   add("flight/monte_carlo", {"flight/clearance", "flight/autopilot", "flight/motion", "flight/rtl",
                              "flight/interpreter"});
+  add("flight/flown",
+      {"flight/clearance", "flight/motion", "flight/rtl", "flight/route", "flight/export",
+       "flight/interpreter", "flight/calibration", "flight/monte_carlo"});
   add("flight/fleet", {"flight/clearance", "flight/motion", "flight/paths", "flight/rtl",
                        "flight/route", "flight/monte_carlo"});
   add("flight/district", {"flight/clearance", "flight/motion", "flight/rtl", "flight/route"});
   add("flight", {"flight/clearance", "flight/motion", "flight/autopilot", "flight/paths",
                  "flight/rtl", "flight/route", "flight/export", "flight/interpreter",
-                 "flight/monte_carlo", "flight/fleet"});
+                 "flight/monte_carlo", "flight/flown", "flight/fleet"});
 
   // Modules of each library below missions/.
   std::map<std::string, std::vector<std::string>> modules_in;
@@ -139,6 +142,9 @@ Modules architecture() {
   add_library({"inspection"}, {"sim", "survey", "flight"},
               {"package", "wizard", "config", "scan", "simulation", "evaluation", "session",
                "scene", "site_data", "support"});
+  add_library({"comparison"}, {"sim", "survey", "flight"},
+              {"package", "config", "scan", "simulation", "evaluation", "session", "scene",
+               "site_data", "support"});
   add_library({"report"}, {"sim", "survey", "flight"},
               {"package", "config", "scan", "simulation", "evaluation", "session", "scene",
                "site_data", "support"});
@@ -149,10 +155,10 @@ Modules architecture() {
               {"package", "config", "scan", "simulation", "evaluation", "session", "scene",
                "site_data", "support"});
   add_library({"studio"}, {}, {"config", "support"});
-  add_library(
-      {"cli", "cli/clouds"}, {"sim", "survey", "flight"},
-      {"studio", "report", "batch", "photo", "inspection", "wizard", "package", "config", "online",
-       "scan", "simulation", "evaluation", "session", "scene", "site_data", "support"});
+  add_library({"cli", "cli/clouds"}, {"sim", "survey", "flight"},
+              {"studio", "report", "batch", "photo", "inspection", "comparison", "wizard",
+               "package", "config", "online", "scan", "simulation", "evaluation", "session",
+               "scene", "site_data", "support"});
   // Like a user of the library: public headers only.
   add("python",
       {"sim/models", "sim/sensors", "survey", "flight/clearance", "flight/route", "missions/api"});

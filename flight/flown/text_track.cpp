@@ -1,0 +1,394 @@
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pugixml.hpp>
+
+#include "flight/export/text.h"
+#include "flight/export/trajectory_file.h"
+#include "flight/flown/flown_readers.h"
+#include "geometry/angle.h"
+#include "geometry/error.h"
+#include "geometry/text_parts.h"
+
+namespace skycap::flight {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double metres_per_foot = 0.3048;
+constexpr double degree = geometry::radians_per_degree;
+
+[[noreturn]] void fail(std::size_t line, const std::string& what) {
+  throw Error(ErrorKind::bad_file, "line " + std::to_string(line) + " " + what);
+}
+
+// ---- CSV tables -------------------------------------------------------------------------------
+
+enum class Column {
+  time,
+  latitude,
+  longitude,
+  above_takeoff,
+  sea_level,
+  ellipsoid,
+  yaw,
+  camera_yaw,
+  camera_pitch,
+  photo
+};
+constexpr std::size_t num_columns = 10;
+
+/// Names of columns in lower-case letters without the unit, in descending order of preference.
+struct ColumnNames {
+  Column column;
+  std::vector<std::string_view> names;
+};
+
+const std::vector<ColumnNames>& column_names() {
+  static const std::vector<ColumnNames> all = {
+      {Column::time, {"time", "flytime", "osdflytime", "timestamp", "elapsedtime", "offsettime"}},
+      {Column::latitude, {"latitude", "lat", "osdlatitude", "gpslat", "gpslatitude"}},
+      {Column::longitude,
+       {"longitude", "lon", "lng", "long", "osdlongitude", "gpslong", "gpslongitude"}},
+      {Column::above_takeoff,
+       {"heightabovetakeoff", "osdheight", "height", "relativealtitude", "relalt",
+        "heightabovehome"}},
+      {Column::sea_level,
+       {"altitudeabovesealevel", "amsl", "altitude", "alt", "osdaltitude", "absalt",
+        "absolutealtitude"}},
+      {Column::ellipsoid, {"ellipsoidheight", "ellh", "heightaboveellipsoid"}},
+      {Column::yaw, {"compassheading", "heading", "yaw", "osdyaw"}},
+      {Column::camera_yaw, {"gimbalheading", "gimbalyaw", "cameraheading", "camerayaw"}},
+      {Column::camera_pitch, {"gimbalpitch", "camerapitch"}},
+      {Column::photo, {"isphoto", "camerainfoisphoto", "cameraisphoto", "photo", "capture"}}};
+  return all;
+}
+
+/// Position of a column in the table, and the factor to metres, seconds or degrees.
+struct TableColumn {
+  std::size_t index = 0;
+  double unit = 1.0;
+};
+using Table = std::array<std::optional<TableColumn>, num_columns>;
+
+const std::optional<TableColumn>& column(const Table& table, Column which) {
+  return table[static_cast<std::size_t>(which)];
+}
+
+std::string unquoted(std::string_view field) {
+  std::string text(geometry::trimmed(field));
+  if (text.size() >= 2 && text.front() == '"' && text.back() == '"') {
+    text = text.substr(1, text.size() - 2);
+  }
+  return text;
+}
+
+/// Splits a name such as "height_above_takeoff(feet)" into letters and unit.
+std::pair<std::string, std::string> name_and_unit(const std::string& field) {
+  std::string letters, unit, *part = &letters;
+  for (const unsigned char c : field) {
+    if (c == '(' || c == '[') part = &unit;
+    if (std::isalpha(c) != 0) part->push_back(static_cast<char>(std::tolower(c)));
+  }
+  const auto cut = [&](std::string_view ending, std::string_view meaning) {
+    if (!unit.empty() || !field.ends_with(ending)) return;
+    letters.resize(letters.size() - (ending.size() - 1));
+    unit = meaning;
+  };
+  cut("_deg", "degrees");
+  cut("_m", "m");
+  cut("_ft", "ft");
+  cut("_s", "s");
+  cut("_ms", "millisecond");
+  return {letters, unit};
+}
+
+double compute_unit(const std::string& unit) {
+  if (unit.starts_with("feet") || unit == "ft") return metres_per_foot;
+  if (unit.starts_with("millisecond") || unit == "ms") return 1e-3;
+  return 1.0;
+}
+
+Table find_columns(const std::vector<std::string>& header) {
+  Table table;
+  for (const ColumnNames& wanted : column_names()) {
+    std::optional<TableColumn>& found = table[static_cast<std::size_t>(wanted.column)];
+    for (const std::string_view name : wanted.names) {
+      for (std::size_t i = 0; i < header.size() && !found; ++i) {
+        const auto [letters, unit] = name_and_unit(header[i]);
+        if (letters == name) found = TableColumn{i, compute_unit(unit)};
+      }
+    }
+  }
+  const bool has_height = column(table, Column::above_takeoff) ||
+                          column(table, Column::sea_level) || column(table, Column::ellipsoid);
+  if (!column(table, Column::latitude) || !column(table, Column::longitude) || !has_height) {
+    throw Error(ErrorKind::bad_file,
+                "the first line must name the columns latitude, longitude and a height "
+                "(height_above_takeoff, altitude or ellipsoid_height)");
+  }
+  return table;
+}
+
+/// Adds the rows of a table.
+class TableRows {
+ public:
+  explicit TableRows(const Table& table) : table_(table) {
+    const bool is_ellipsoid =
+        !column(table_, Column::sea_level) && column(table_, Column::ellipsoid);
+    builder_.log().datum = is_ellipsoid ? HeightDatum::ellipsoid : HeightDatum::mean_sea_level;
+    builder_.log().has_captures = column(table_, Column::photo).has_value();
+  }
+
+  void add(const std::vector<std::string>& fields, std::size_t line) {
+    const double latitude = read(fields, Column::latitude, line);
+    const double longitude = read(fields, Column::longitude, line);
+    const double above_takeoff = read(fields, Column::above_takeoff, line);
+    double height = read(fields, Column::sea_level, line);
+    if (std::isnan(height)) height = read(fields, Column::ellipsoid, line);
+    // Without an absolute height, only the one above take-off is used.
+    if (std::isnan(height)) height = above_takeoff;
+    double time = read(fields, Column::time, line);
+    if (std::isnan(time)) time = static_cast<double>(line);
+    builder_.set_yaw(time, read(fields, Column::yaw, line));
+    builder_.set_camera(time, read(fields, Column::camera_yaw, line),
+                        read(fields, Column::camera_pitch, line));
+    const Vector3d location(latitude, longitude, height);
+    builder_.add_position(time, location, above_takeoff);
+    // The mark stays on while a photo is stored.
+    const double photo = read(fields, Column::photo, line);
+    const bool is_photo = photo != 0.0 && !std::isnan(photo);
+    if (is_photo && !was_photo_) builder_.add_capture(time, location, above_takeoff);
+    was_photo_ = is_photo;
+  }
+
+  FlownLog finish() { return builder_.finish("contains no row with a position"); }
+
+ private:
+  double read(const std::vector<std::string>& fields, Column which, std::size_t line) const {
+    const auto& place = column(table_, which);
+    if (!place || place->index >= fields.size()) return unspecified;
+    const std::string text = unquoted(fields[place->index]);
+    if (text.empty()) return unspecified;
+    if (which == Column::photo && (text == "True" || text == "true")) return 1.0;
+    if (which == Column::photo && (text == "False" || text == "false")) return 0.0;
+    const auto value = to_number(text);
+    if (value) return place->unit * *value;
+    if (which == Column::latitude || which == Column::longitude) {
+      fail(line, "has \"" + text + "\" as a coordinate; it must be a number in degrees");
+    }
+    return unspecified;
+  }
+
+  const Table& table_;
+  FlownLogBuilder builder_{"CSV table"};
+  bool was_photo_ = false;
+};
+
+std::vector<std::string> split_row(std::string_view line, char separator) {
+  std::vector<std::string> fields = split(line, separator);
+  for (std::string& field : fields) field = unquoted(field);
+  return fields;
+}
+
+// ---- Tables of photos and subtitles -----------------------------------------------------------
+
+/// Returns the number that ends before `label`, such as in "43.48129633,Lat".
+std::optional<double> number_before(std::string_view line, std::string_view label) {
+  const std::size_t end = line.find(label);
+  if (end == std::string_view::npos) return std::nullopt;
+  const std::size_t begin = line.find_last_of("\t ", end);
+  return to_number(
+      geometry::trimmed(line.substr(begin == std::string_view::npos ? 0 : begin + 1,
+                                    end - (begin == std::string_view::npos ? 0 : begin + 1))));
+}
+
+/// Returns the number after a label such as "latitude:" or "rel_alt:".
+std::optional<double> number_after(std::string_view line, std::string_view label) {
+  const std::size_t found = line.find(label);
+  if (found == std::string_view::npos) return std::nullopt;
+  std::string_view rest = line.substr(found + label.size());
+  rest.remove_prefix(std::min(rest.find_first_not_of(" :"), rest.size()));
+  return to_number(rest.substr(0, std::min(rest.find_first_of(" ]\t,"), rest.size())));
+}
+
+/// Returns the time of "00:01:02,345 --> ..." [s].
+std::optional<double> subtitle_time(std::string_view line) {
+  const std::size_t arrow = line.find(" --> ");
+  if (arrow == std::string_view::npos) return std::nullopt;
+  std::string text(line.substr(0, arrow));
+  std::ranges::replace(text, ',', '.');
+  double seconds = 0.0;
+  for (const std::string& part : split(text, ':')) {
+    const auto value = to_number(part);
+    if (!value) return std::nullopt;
+    seconds = 60.0 * seconds + *value;
+  }
+  return seconds;
+}
+
+/// Returns the seconds since an arbitrary day of "2026-05-01T10:11:12.5Z".
+std::optional<double> iso_time(std::string_view text) {
+  const std::size_t t = text.find('T');
+  if (t == std::string_view::npos) return std::nullopt;
+  const std::vector<std::string> date = split(text.substr(0, t), '-');
+  std::string_view clock = text.substr(t + 1);
+  clock = clock.substr(0, clock.find_first_of("Z+-"));
+  if (date.size() != 3) return std::nullopt;
+  double seconds = 0.0;
+  for (const std::string& part : split(clock, ':')) {
+    const auto value = to_number(part);
+    if (!value) return std::nullopt;
+    seconds = 60.0 * seconds + *value;
+  }
+  const auto year = to_number(date[0]), month = to_number(date[1]), day = to_number(date[2]);
+  if (!year || !month || !day) return std::nullopt;
+  // Days from civil (Hinnant), valid for all dates of the Gregorian calendar.
+  const double y = *month <= 2.0 ? *year - 1.0 : *year;
+  const double era = std::floor(y / 400.0), of_era = y - 400.0 * era;
+  const double m = *month + (*month > 2.0 ? -3.0 : 9.0);
+  const double of_year = std::floor((153.0 * m + 2.0) / 5.0) + *day - 1.0;
+  const double days = 146097.0 * era + 365.0 * of_era + std::floor(of_era / 4.0) -
+                      std::floor(of_era / 100.0) + of_year;
+  return 86400.0 * days + seconds;
+}
+
+}  // namespace
+
+FlownLog read_csv_track(std::string_view text) {
+  std::optional<Table> table;
+  std::optional<TableRows> rows;
+  char separator = ',';
+  std::size_t number = 0;
+  for (std::string_view rest = text; !rest.empty();) {
+    const std::string_view line = next_line(rest);
+    ++number;
+    if (geometry::trimmed(line).empty() || line.starts_with("sep=") || line.starts_with('#')) {
+      continue;
+    }
+    if (!table) {
+      if (line.find(',') == std::string_view::npos) {
+        separator = line.find(';') != std::string_view::npos ? ';' : '\t';
+      }
+      table = find_columns(split_row(line, separator));
+      rows.emplace(*table);
+      continue;
+    }
+    rows->add(split(line, separator), number);
+  }
+  if (!rows) throw Error(ErrorKind::bad_file, "contains no header line");
+  return rows->finish();
+}
+
+FlownLog read_mrk_track(std::string_view text) {
+  FlownLogBuilder builder("table of DJI photos (.MRK)");
+  builder.log().datum = HeightDatum::ellipsoid;
+  builder.log().has_captures = true;
+  std::size_t number = 0;
+  for (std::string_view rest = text; !rest.empty();) {
+    const std::string_view line = next_line(rest);
+    ++number;
+    const std::vector<std::string> words = geometry::split_words(line);
+    if (words.empty()) continue;
+    // Photo number, time of the week [s], week, and the position of the camera.
+    std::optional<double> time, latitude, longitude, height;
+    if (words.size() > 1) time = to_number(words[1]);
+    latitude = number_before(line, ",Lat");
+    longitude = number_before(line, ",Lon");
+    height = number_before(line, ",Ellh");
+    if (!time || !latitude || !longitude || !height) {
+      if (rest.empty()) {
+        builder.warn("the last line is incomplete");
+        break;
+      }
+      fail(number, "must contain a time and a position (Lat, Lon, Ellh)");
+    }
+    const Vector3d location(*latitude, *longitude, *height);
+    builder.add_position(*time, location, unspecified);
+    builder.add_capture(*time, location, unspecified);
+  }
+  FlownLog log = builder.finish("contains no photo");
+  // Photos are not a track: the time between them is no gap.
+  std::erase_if(log.warnings, [](const std::string& warning) {
+    return warning.find("without positions") != std::string::npos;
+  });
+  return log;
+}
+
+FlownLog read_srt_track(std::string_view text) {
+  FlownLogBuilder builder("subtitles of a DJI video");
+  double time = unspecified;
+  for (std::string_view rest = text; !rest.empty();) {
+    const std::string_view line = next_line(rest);
+    time = subtitle_time(line).value_or(time);
+    const auto latitude = number_after(line, "latitude"),
+               longitude = number_after(line, "longitude");
+    if (!latitude || !longitude || std::isnan(time)) continue;
+    const double above = number_after(line, "rel_alt").value_or(unspecified);
+    const double height = number_after(line, "abs_alt").value_or(above);
+    builder.add_position(time, {*latitude, *longitude, height}, above);
+  }
+  return builder.finish("contains no position; enable video subtitles in the DJI app");
+}
+
+FlownLog read_gpx_track(const std::string& text) {
+  pugi::xml_document document;
+  const pugi::xml_parse_result parsed = document.load_buffer(text.data(), text.size());
+  FlownLogBuilder builder("GPX track");
+  if (!parsed)
+    builder.warn("the file is incomplete or damaged: " + std::string(parsed.description()));
+  std::size_t count = 0;
+  for (const pugi::xml_node& track : document.child("gpx").children("trk")) {
+    for (const pugi::xml_node& segment : track.children("trkseg")) {
+      for (const pugi::xml_node& point : segment.children("trkpt")) {
+        const double number = static_cast<double>(count++);
+        const pugi::xml_node height = point.child("ele");
+        if (!height) continue;
+        const std::optional<double> stated = iso_time(point.child("time").text().as_string());
+        const double time = stated ? *stated : number;
+        builder.add_position(
+            time,
+            {point.attribute("lat").as_double(unspecified),
+             point.attribute("lon").as_double(unspecified), height.text().as_double(unspecified)},
+            unspecified);
+      }
+    }
+  }
+  return builder.finish("contains no track point with a height (trk, trkseg, trkpt, ele)");
+}
+
+FlownLog read_tum_track(const std::string& text) {
+  FlownLogBuilder builder("TUM trajectory");
+  builder.log().is_local = true;
+  for (const TimedPose& pose : read_tum(text)) {
+    const Vector3d axis = pose.world_from_camera.linear().col(2);
+    const double yaw = std::atan2(axis.x(), axis.y()) / degree;
+    const double pitch = std::asin(std::clamp(axis.z(), -1.0, 1.0)) / degree;
+    builder.set_yaw(pose.time, yaw);
+    builder.set_camera(pose.time, yaw, pitch);
+    builder.add_position(pose.time, pose.world_from_camera.translation(), unspecified);
+  }
+  return builder.finish("contains no pose");
+}
+
+FlownLog read_trajectory_track(const std::string& text) {
+  FlownLogBuilder builder("Skycap trajectory");
+  builder.log().is_local = true;
+  builder.log().has_captures = true;
+  for (const TimedState& state : read_trajectory_csv(text)) {
+    const double yaw = state.yaw / degree;
+    builder.set_yaw(state.time, yaw);
+    builder.set_camera(state.time, yaw, state.pitch / degree);
+    builder.add_position(state.time, state.position, unspecified);
+    if (state.is_capture) builder.add_capture(state.time, state.position, unspecified);
+  }
+  return builder.finish("contains no state");
+}
+
+}  // namespace skycap::flight

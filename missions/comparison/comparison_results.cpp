@@ -1,0 +1,282 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "geometry/angle.h"
+#include "missions/comparison/flight_comparison.h"
+#include "missions/package/flight_report.h"
+#include "missions/package/replanned_mission.h"
+#include "missions/package/route_json.h"
+#include "missions/package/surface_json.h"
+#include "missions/support/json_text.h"
+#include "missions/support/number_text.h"
+#include "missions/version.h"
+
+namespace skycap::missions::comparison {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using support::to_json;
+
+double compute_length(const flight::PlannedLeg& leg) {
+  double length = 0.0;
+  for (std::size_t i = 1; i < leg.points.size(); ++i) {
+    length += (leg.points[i] - leg.points[i - 1]).norm();
+  }
+  return length;
+}
+
+double planned_duration(const FlightComparison& comparison) {
+  double duration = 0.0;
+  for (const flight::PlannedLeg& leg : comparison.plan.legs) duration += leg.duration;
+  return duration;
+}
+
+/// Returns the number, or null if it is unspecified.
+Json number_json(double number) { return std::isfinite(number) ? Json(number) : Json(); }
+
+Json legs_json(const FlightComparison& comparison) {
+  Json legs = Json::array();
+  const double takeoff = comparison.track.states.front().time;
+  for (std::size_t i = 0; i < comparison.plan.legs.size(); ++i) {
+    const flight::PlannedLeg& planned = comparison.plan.legs[i];
+    const flight::LegComparison& leg = comparison.route.legs[i];
+    Json json{{"from", planned.from},
+              {"to", planned.to},
+              {"length_m", compute_length(planned)},
+              {"planned_s", planned.duration},
+              {"flown", leg.is_flown},
+              {"flown_fraction", leg.flown_fraction}};
+    json["begin_s"] = leg.is_flown ? Json(leg.begin - takeoff) : Json();
+    json["duration_s"] = leg.is_flown ? Json(leg.duration) : Json();
+    json["max_error_m"] = leg.is_flown ? Json(leg.max_error) : Json();
+    json["mean_error_m"] = leg.is_flown ? Json(leg.mean_error) : Json();
+    legs.push_back(std::move(json));
+  }
+  return legs;
+}
+
+Json captures_json(const FlightComparison& comparison) {
+  Json list = Json::array();
+  const double takeoff = comparison.track.states.front().time;
+  for (std::size_t i = 0; i < comparison.plan.captures.size(); ++i) {
+    const flight::PlannedCapture& planned = comparison.plan.captures[i];
+    const flight::CaptureComparison& capture = comparison.route.captures[i];
+    Json json{{"item", planned.item},
+              {"planned_position", to_json(planned.position)},
+              {"made", capture.is_made},
+              {"missed", static_cast<bool>(comparison.is_missed[i])}};
+    if (capture.is_made) {
+      json["time_s"] = capture.state.time - takeoff;
+      json["position"] = to_json(capture.state.position);
+      json["yaw_deg"] = number_json(capture.state.camera_yaw_deg);
+      json["pitch_deg"] = number_json(capture.state.camera_pitch_deg);
+      json["error_m"] = capture.error;
+      json["turned_deg"] =
+          capture.turned ? Json(*capture.turned / geometry::radians_per_degree) : Json();
+    }
+    list.push_back(std::move(json));
+  }
+  return {{"source", comparison.route.are_captures_assumed ? "assumed" : "log"},
+          {"planned", comparison.plan.captures.size()},
+          {"missed", comparison.num_missed_captures()},
+          {"other", comparison.route.num_other_captures},
+          {"mean_offset_m", to_json(comparison.route.mean_offset)},
+          {"list", list}};
+}
+
+Json coverage_json(const ComparedCoverage& coverage) {
+  return {{"planned", package::again_json(coverage.planned)},
+          {"flown", package::again_json(coverage.flown)},
+          {"patched", coverage.patched ? package::again_json(*coverage.patched) : Json()},
+          {"surface", package::missing_json(coverage.missing, "simulator")}};
+}
+
+Json patch_json(const FlightComparison& comparison) {
+  if (!comparison.patch) return {};
+  const flight::Route& route = comparison.patch->route;
+  Json files = Json::array();
+  for (const package::FlightFile& file : comparison.patch->files.written) {
+    files.push_back({{"name", file.name},
+                     {"heights", file.heights},
+                     {"min_clearance_m", file.min_clearance},
+                     {"duration_s", file.duration}});
+  }
+  return {{"views", comparison.missed_views},
+          {"stations", route.capture_points.size()},
+          {"length_m", route.length},
+          {"duration_s", route.duration},
+          {"min_clearance_m", number_json(route.min_clearance)},
+          {"sorties", route.sorties.size()},
+          {"skipped_views", package::unreached_json(route.unreached)},
+          {"files", files},
+          {"notes", comparison.patch->files.notes}};
+}
+
+std::string position_text(const Eigen::Vector3d& position) {
+  return fmt::format("({:.1f}, {:.1f}, {:.1f})", position.x(), position.y(), position.z());
+}
+
+std::string leg_name(const flight::PlannedLeg& leg) { return leg.from + " to " + leg.to; }
+
+/// Returns the table of legs.
+std::string legs_text(const FlightComparison& comparison) {
+  std::size_t width = 4;
+  for (const flight::PlannedLeg& leg : comparison.plan.legs) {
+    width = std::max(width, leg_name(leg).size());
+  }
+  std::string text =
+      fmt::format("  {:<{}}  length m  planned s  flown s  max. error m  mean m\n", "leg", width);
+  for (std::size_t i = 0; i < comparison.plan.legs.size(); ++i) {
+    const flight::PlannedLeg& planned = comparison.plan.legs[i];
+    const flight::LegComparison& leg = comparison.route.legs[i];
+    text += fmt::format("  {:<{}}  {:8.1f}  {:9.1f}  ", leg_name(planned), width,
+                        compute_length(planned), planned.duration);
+    text += leg.is_flown ? fmt::format("{:7.1f}  {:12.2f}  {:6.2f}\n", leg.duration, leg.max_error,
+                                       leg.mean_error)
+                         : "not flown\n";
+  }
+  return text;
+}
+
+std::string captures_text(const FlightComparison& comparison) {
+  const std::size_t planned = comparison.plan.captures.size();
+  const std::size_t missed = comparison.num_missed_captures();
+  if (planned == 0) return "  captures  none in the route file\n";
+  std::string text = fmt::format("  captures  {} planned, {} missed", planned, missed);
+  std::string items;
+  for (std::size_t i = 0; i < planned; ++i) {
+    if (!comparison.is_missed[i]) continue;
+    items += (items.empty() ? "" : ", ") + comparison.plan.captures[i].item;
+    if (comparison.route.captures[i].is_made) items += " (aimed elsewhere)";
+  }
+  if (!items.empty()) text += ": " + items;
+  if (comparison.route.num_other_captures > 0) {
+    text += fmt::format("; {} without a plan", comparison.route.num_other_captures);
+  }
+  const Eigen::Vector3d& offset = comparison.route.mean_offset;
+  text += fmt::format(
+      "\n  offset    {:.2f} m on average at the captures: east {:.2f}, north {:.2f}, up {:.2f}\n",
+      offset.norm(), offset.x(), offset.y(), offset.z());
+  if (comparison.route.are_captures_assumed) {
+    text +=
+        "  Warning: the log contains no camera event. A capture is assumed at each station that "
+        "was reached.\n";
+  }
+  return text;
+}
+
+std::string percent(const package::ReflightCoverage& coverage) {
+  std::string text = fmt::format("{:.2f}%", 100.0 * coverage.visible.value_or(coverage.all));
+  return text;
+}
+
+std::string coverage_text(const FlightComparison& comparison) {
+  if (!comparison.coverage) {
+    return "  coverage  not computed: " + comparison.no_coverage + "\n";
+  }
+  const ComparedCoverage& coverage = *comparison.coverage;
+  std::string text = fmt::format("  coverage  planned {}, flown {}", percent(coverage.planned),
+                                 percent(coverage.flown));
+  if (coverage.patched) text += ", with the patch mission " + percent(*coverage.patched);
+  text += coverage.flown.visible ? " of the visible surface (simulated)\n"
+                                 : " of the surface (simulated)\n";
+  // Surface that no admissible view sees is no reason to fly again.
+  std::vector<package::Hole> holes = coverage.missing.holes;
+  std::erase_if(holes, [](const package::Hole& hole) {
+    return hole.reason == survey::surfel::MissingReason::unreachable;
+  });
+  if (holes.empty()) return text;
+  text += fmt::format("  holes     {} of at least {:.1f} m^2, largest {:.1f} m^2 at {}\n",
+                      holes.size(), coverage.missing.min_hole_area, holes.front().area,
+                      position_text(holes.front().centre));
+  return text;
+}
+
+std::string patch_text(const FlightComparison& comparison) {
+  if (!comparison.patch) return "";
+  const flight::Route& route = comparison.patch->route;
+  std::string text = fmt::format(
+      "  patch     {} of {}, {:.1f} m in {:.1f} min, {}, minimum clearance {:.2f} m, verified for "
+      "every leg\n",
+      route.capture_points.size(), support::counted(comparison.missed_views.size(), "missed view"),
+      route.length, route.duration / 60.0, support::counted(route.sorties.size(), "sortie"),
+      route.min_clearance);
+  std::string files;
+  for (const package::FlightFile& file : comparison.patch->files.written) files += " " + file.name;
+  if (!files.empty()) text += "  files    " + files + "\n";
+  for (const std::string& note : comparison.patch->files.notes)
+    text += "  note      " + note + "\n";
+  for (const flight::Unreached& view : route.unreached) {
+    text += fmt::format("  Warning: view {} is not in the patch mission: {}\n",
+                        view.capture_point.view_index, view.reason);
+  }
+  return text;
+}
+
+}  // namespace
+
+void stage_comparison(const FlightComparison& comparison, const CompareRequest& request,
+                      geometry::OutputFolder& folder) {
+  Json logs = Json::array();
+  for (const std::filesystem::path& log : request.logs) logs.push_back(log.filename().string());
+  Json clearance{{"required_m", comparison.clearance}};
+  if (comparison.cloud_distance) {
+    clearance["min_cloud_distance_m"] = comparison.cloud_distance->distance;
+    clearance["position"] = to_json(comparison.cloud_distance->position);
+    clearance["time_s"] = comparison.cloud_distance->time;
+  }
+  const Json json{{"mission", comparison.name},
+                  {"version", version},
+                  {"complete", true},
+                  {"route_files", comparison.files},
+                  {"logs", logs},
+                  {"log_kind", comparison.track.kind},
+                  {"heights", comparison.track.heights},
+                  {"warnings", comparison.track.warnings},
+                  {"max_deviation_m", request.comparison.max_deviation},
+                  {"duration_s", comparison.route.duration},
+                  {"planned_duration_s", planned_duration(comparison)},
+                  {"length_m", comparison.route.length},
+                  {"legs", legs_json(comparison)},
+                  {"captures", captures_json(comparison)},
+                  {"clearance", clearance},
+                  {"coverage", comparison.coverage ? coverage_json(*comparison.coverage) : Json()},
+                  {"patch", patch_json(comparison)}};
+  folder.write(comparison_name, support::json_text(json));
+}
+
+std::string comparison_text(const FlightComparison& comparison) {
+  const std::size_t legs = comparison.plan.legs.size(), flown = comparison.num_flown_legs();
+  double max_error = 0.0;
+  for (const flight::LegComparison& leg : comparison.route.legs) {
+    max_error = std::max(max_error, leg.max_error);
+  }
+  std::string text = fmt::format(
+      "{}: {}, heights {}\n  legs      {} of {} flown, maximum error {:.2f} m\n"
+      "  time      {:.1f} min flown, {:.1f} min planned; {:.1f} m flown\n",
+      comparison.name, comparison.track.kind, comparison.track.heights, flown, legs, max_error,
+      comparison.route.duration / 60.0, planned_duration(comparison) / 60.0,
+      comparison.route.length);
+  text += captures_text(comparison);
+  if (comparison.cloud_distance) {
+    const CloudDistance& nearest = *comparison.cloud_distance;
+    text += fmt::format(
+        "  clearance minimum {:.2f} m to the measured cloud, {:.0f} s after take-off at {}; "
+        "required {:.2f} m\n",
+        nearest.distance, nearest.time, position_text(nearest.position), comparison.clearance);
+    if (nearest.distance < comparison.clearance) {
+      text += "  Warning: the flight violated the required clearance.\n";
+    }
+  }
+  text += coverage_text(comparison) + patch_text(comparison);
+  for (const std::string& warning : comparison.track.warnings) {
+    text += "  Warning: log: " + warning + ".\n";
+  }
+  return text + legs_text(comparison);
+}
+
+}  // namespace skycap::missions::comparison

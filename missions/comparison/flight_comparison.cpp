@@ -1,0 +1,361 @@
+#include "missions/comparison/flight_comparison.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "flight/export/export.h"
+#include "flight/interpreter/interpret.h"
+#include "geometry/angle.h"
+#include "geometry/error.h"
+#include "geometry/io/cloud_io.h"
+#include "geometry/points/spatial_index.h"
+#include "missions/config/resolve.h"
+#include "missions/evaluation/survey_scene.h"
+#include "missions/package/fleet/timetable_file.h"
+#include "missions/package/package.h"
+#include "missions/package/replanned_mission.h"
+
+namespace skycap::missions::comparison {
+namespace {
+
+using Eigen::Vector3d;
+using session::ViewInFlight;
+
+constexpr const char* cloud_name = "cloud.ply";
+
+/// Returns the numbers in a file name, such as {2, 1} for "mission-2-1.plan".
+std::vector<std::size_t> numbers_in(const std::string& name) {
+  std::vector<std::size_t> numbers;
+  bool is_number = false;
+  for (const char c : name) {
+    const bool is_digit = c >= '0' && c <= '9';
+    if (is_digit && !is_number) numbers.push_back(0);
+    if (is_digit) numbers.back() = 10 * numbers.back() + static_cast<std::size_t>(c - '0');
+    is_number = is_digit;
+  }
+  return numbers;
+}
+
+/// Returns the route files of the mission's vehicle, in flight order.
+std::vector<std::filesystem::path> find_routes(const std::filesystem::path& folder,
+                                               const flight::FlightOptions& options) {
+  if (options.is_fleet()) {
+    throw Error(ErrorKind::bad_usage,
+                folder.string() +
+                    " is a mission of several vehicles; name the files of one vehicle with "
+                    "--route");
+  }
+  const flight::Format own = package::own_format(options.required_vehicle().autopilot);
+  for (const flight::Format format : {own, flight::Format::csv}) {
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+      const std::string name = entry.path().filename().string();
+      if (package::is_flight_file(name, format) && !package::is_fleet_file(name)) {
+        files.push_back(entry.path());
+      }
+    }
+    std::ranges::sort(files, {}, [](const std::filesystem::path& file) {
+      return std::pair(numbers_in(file.filename().string()), file.string());
+    });
+    if (!files.empty()) return files;
+  }
+  throw Error(ErrorKind::bad_file,
+              folder.string() + " contains no route file; plan the mission again");
+}
+
+/// Returns the flight of a route file.
+flight::PlannedFlight read_route(const std::filesystem::path& file,
+                                 const package::PackagedSurvey& survey) {
+  const flight::FlightOptions own = package::find_file_flight(file, survey.flight);
+  flight::FlightFacts facts = own.facts();
+  facts.pad = survey.flight.is_fleet() ? own.takeoff.value_or(survey.pad) : survey.pad;
+  facts.is_pad_known = true;
+  facts.vehicle = own.required_vehicle();
+  const flight::InterpretedRoute route = flight::interpret_file(file, facts);
+  const flight::Motion motion(own.required_vehicle(), own.route(facts.pad).conditions);
+  return flight::make_planned_flight(route, motion);
+}
+
+flight::FlownTrack read_track(const CompareRequest& request,
+                              const package::PackagedSurvey& survey) {
+  flight::FlownTrack track;
+  for (const std::filesystem::path& log : request.logs) {
+    const flight::FlownLog content = flight::read_flown_log(log);
+    try {
+      append_track(track, place_track(content, survey.flight.site, survey.flight.is_georeferenced,
+                                      survey.pad, request.heights));
+    } catch (const Error& error) {
+      throw Error(error.kind(), log.string() + ": " + error.what());
+    }
+  }
+  return track;
+}
+
+/// Returns the minimum distance of the track from the cloud of the survey, except above the pad.
+std::optional<CloudDistance> measure_cloud(const std::filesystem::path& file,
+                                           const package::PackagedSurvey& survey,
+                                           const flight::FlownTrack& track) {
+  constexpr double typical_radius = 2.0, step = 0.1, pad_radius = 3.0;
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  geometry::SpatialIndex index(typical_radius);
+  for (const Eigen::Vector3f& point : geometry::read_cloud(file).positions) index.insert(point);
+  if (index.size() == 0) return std::nullopt;
+  CloudDistance nearest{std::numeric_limits<double>::infinity()};
+  const auto measure = [&](const Vector3d& position, double time) {
+    const Vector3d from_pad = position - survey.pad;
+    if (from_pad.head<2>().norm() < pad_radius && from_pad.z() < survey.flight.climb()) return;
+    const auto found = index.nearest(position.cast<float>(), 1);
+    const double distance = (index.point(found.front().index).cast<double>() - position).norm();
+    if (distance < nearest.distance) nearest = {distance, position, time};
+  };
+  const std::vector<flight::TrackState>& states = track.states;
+  const double begin = states.front().time;
+  measure(states.front().position, 0.0);
+  for (std::size_t i = 1; i < states.size(); ++i) {
+    const Vector3d displacement = states[i].position - states[i - 1].position;
+    const double duration = states[i].time - states[i - 1].time;
+    // The path in a gap is unknown.
+    const bool is_known = duration <= flight::min_log_gap;
+    const auto count =
+        is_known ? static_cast<std::size_t>(std::max(1.0, std::ceil(displacement.norm() / step)))
+                 : std::size_t{1};
+    for (std::size_t k = 1; k <= count; ++k) {
+      const double t = static_cast<double>(k) / static_cast<double>(count);
+      measure(states[i - 1].position + t * displacement, states[i - 1].time + t * duration - begin);
+    }
+  }
+  if (std::isinf(nearest.distance)) return std::nullopt;
+  return nearest;
+}
+
+geometry::View make_view(const Vector3d& position, double yaw_deg, double pitch_deg) {
+  return {position, flight::compute_direction({geometry::radians_per_degree * yaw_deg,
+                                               geometry::radians_per_degree * pitch_deg})};
+}
+
+double angle_between(const Vector3d& a, const Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+/// Returns the index of the mission's view that a planned capture belongs to.
+std::size_t find_view(const flight::PlannedCapture& capture,
+                      const std::vector<geometry::View>& views) {
+  const bool has_direction = std::isfinite(capture.yaw_deg) && std::isfinite(capture.pitch_deg);
+  std::size_t nearest = 0;
+  double min_cost = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    double cost = (views[i].position - capture.position).norm();
+    if (has_direction) {
+      const geometry::View view = make_view(capture.position, capture.yaw_deg, capture.pitch_deg);
+      cost += angle_between(view.direction, views[i].direction);
+    }
+    if (cost < min_cost) min_cost = cost, nearest = i;
+  }
+  return nearest;
+}
+
+/// Marks the planned captures that must be repeated, and collects their views.
+void find_missed(const package::PackagedSurvey& survey, FlightComparison& comparison) {
+  const geometry::CameraConfig& camera = survey.flight.capture.camera;
+  const double max_turn = 0.5 * std::min(camera.horizontal_fov, camera.vertical_fov);
+  for (std::size_t i = 0; i < comparison.route.captures.size(); ++i) {
+    const flight::CaptureComparison& capture = comparison.route.captures[i];
+    const bool is_missed = !capture.is_made || capture.turned.value_or(0.0) > max_turn;
+    comparison.is_missed.push_back(is_missed);
+    if (is_missed && !survey.views.empty()) {
+      comparison.missed_views.push_back(find_view(comparison.plan.captures[i], survey.views));
+    }
+  }
+  std::ranges::sort(comparison.missed_views);
+  const auto repeated = std::ranges::unique(comparison.missed_views);
+  comparison.missed_views.erase(repeated.begin(), repeated.end());
+}
+
+/// Returns the stations of some views. The path to each contains the paths to the views before it
+/// that are left out.
+std::vector<flight::CapturePoint> make_patch_points(const package::PackagedSurvey& survey,
+                                                    const std::vector<std::size_t>& views) {
+  std::vector<flight::CapturePoint> all =
+      package::make_capture_points(survey.flight, survey.views, survey.paths);
+  std::vector<flight::CapturePoint> kept;
+  std::vector<Vector3d> path;
+  bool is_known = true;
+  for (flight::CapturePoint& capture_point : all) {
+    if (capture_point.approach_path.empty()) is_known = false;
+    // The first point of a path is the last one of the path before it.
+    const std::vector<Vector3d>& approach = capture_point.approach_path;
+    const bool is_joined = !path.empty() && !approach.empty() && path.back() == approach.front();
+    path.insert(path.end(), approach.begin() + (is_joined ? 1 : 0), approach.end());
+    if (!std::ranges::binary_search(views, capture_point.view_index)) continue;
+    capture_point.approach_path = is_known ? std::move(path) : std::vector<Vector3d>();
+    path.clear();
+    is_known = true;
+    kept.push_back(std::move(capture_point));
+  }
+  return kept;
+}
+
+package::SurveyMission plan_patch(const package::PackagedSurvey& survey,
+                                  const std::vector<std::size_t>& views,
+                                  geometry::OutputFolder& folder, const std::stop_token& stop) {
+  package::SurveyMission mission;
+  mission.image_motion = survey.flight.image_motion_bounds();
+  mission.route =
+      package::plan_flight(survey.flight, survey.measured, survey.pad,
+                           make_patch_points(survey, views), survey.landing_surfaces, stop);
+  mission.files = package::stage_flight(
+      survey.name + " " + patch_stem, survey.flight, mission.route, survey.measured,
+      package::package_formats(survey.flight.required_vehicle().autopilot), folder, patch_stem);
+  return mission;
+}
+
+/// Simulates captures in the scene of the mission.
+class CoverageSimulation {
+ public:
+  /// Keeps a reference to the options. `folder` is the base of the scene's paths.
+  CoverageSimulation(const evaluation::SimulationOptions& options, const session::RunOptions& run,
+                     const std::filesystem::path& folder, const std::stop_token& stop)
+      : options_(options), run_(run), scene_(options, folder, run.threads), stop_(stop) {
+    figures_.truth = {scene_.samples(),
+                      {},
+                      scene_.visible(run.threads, stop),
+                      {},
+                      geometry::surface_area(scene_.model())};
+  }
+
+  simulation::CoveredAgain simulate(const std::vector<ViewInFlight>& views) const {
+    return simulation::reflight_coverage(options_, scene_, views, run_.seed, run_.threads, {},
+                                         stop_);
+  }
+  package::ReflightCoverage measure(const simulation::CoveredAgain& covered) const {
+    return package::simulate_reflight(figures_, covered);
+  }
+  package::MissingSurface find_missing(const simulation::CoveredAgain& covered,
+                                       const std::vector<ViewInFlight>& views) const {
+    std::vector<geometry::View> poses;
+    for (const ViewInFlight& view : views) poses.push_back(view.view);
+    const package::TrueCoverage& truth = *figures_.truth;
+    return package::missing_surface(
+        package::true_patches(truth.samples, truth.area, covered.stored, truth.is_visible), poses);
+  }
+
+ private:
+  const evaluation::SimulationOptions& options_;
+  session::RunOptions run_;
+  evaluation::SurveyScene scene_;
+  std::stop_token stop_;
+  package::CoverageFigures figures_;
+};
+
+std::vector<ViewInFlight> planned_views(const flight::PlannedFlight& plan) {
+  std::vector<ViewInFlight> views;
+  for (const flight::PlannedCapture& capture : plan.captures) {
+    if (std::isnan(capture.yaw_deg) || std::isnan(capture.pitch_deg)) continue;
+    views.push_back({.view = make_view(capture.position, capture.yaw_deg, capture.pitch_deg),
+                     .time = static_cast<double>(views.size())});
+  }
+  return views;
+}
+
+std::vector<ViewInFlight> flown_views(const FlightComparison& comparison) {
+  std::vector<ViewInFlight> views;
+  const auto add = [&](const flight::TrackState& state) {
+    if (std::isnan(state.camera_yaw_deg) || std::isnan(state.camera_pitch_deg)) return;
+    views.push_back(
+        {.view = make_view(state.position, state.camera_yaw_deg, state.camera_pitch_deg),
+         .velocity = flight::compute_velocity(comparison.track.states, state.time),
+         .time = state.time});
+  };
+  for (const flight::CaptureComparison& capture : comparison.route.captures) {
+    if (capture.is_made) add(capture.state);
+  }
+  for (const flight::TrackState& state : comparison.route.other_captures) add(state);
+  std::ranges::stable_sort(views, {}, &ViewInFlight::time);
+  return views;
+}
+
+/// Returns why the coverage cannot be simulated; empty if it can.
+std::string find_obstacle(const evaluation::SimulationOptions& options,
+                          const flight::PlannedFlight& plan) {
+  if (options.scene.model.empty() && !options.scene.is_truth_prior()) {
+    return "the mission has no scene; name a mission with --truth";
+  }
+  if (options.survey.flight.capture.scans_in_flight())
+    return "the laser scanner measures in flight";
+  if (plan.captures.empty()) return "the route file commands no capture";
+  return "";
+}
+
+ComparedCoverage compute_coverage(const CoverageSimulation& simulation,
+                                  const FlightComparison& comparison) {
+  ComparedCoverage coverage;
+  coverage.planned = simulation.measure(simulation.simulate(planned_views(comparison.plan)));
+  std::vector<ViewInFlight> views = flown_views(comparison);
+  const simulation::CoveredAgain covered = simulation.simulate(views);
+  coverage.flown = simulation.measure(covered);
+  coverage.missing = simulation.find_missing(covered, views);
+  if (!comparison.patch) return coverage;
+  double time = views.empty() ? 0.0 : views.back().time;
+  for (const geometry::View& view : flight::photo_views(comparison.patch->route)) {
+    views.push_back({.view = view, .time = time += 1.0});
+  }
+  coverage.patched = simulation.measure(simulation.simulate(views));
+  return coverage;
+}
+
+}  // namespace
+
+std::size_t FlightComparison::num_flown_legs() const {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      route.legs, [](const flight::LegComparison& leg) { return leg.is_flown; }));
+}
+
+std::size_t FlightComparison::num_missed_captures() const {
+  return static_cast<std::size_t>(std::ranges::count(is_missed, true));
+}
+
+FlightComparison compare_flight(const CompareRequest& request, geometry::OutputFolder& folder,
+                                const std::function<void(const std::string&)>& report,
+                                const std::stop_token& stop) {
+  report("reading " + request.folder.string());
+  const config::MissionSetup setup =
+      package::read_package_summary(request.folder, request.overrides).mission;
+  const package::PackagedSurvey survey = package::read_package(request.folder, request.overrides);
+  FlightComparison comparison;
+  comparison.name = survey.name;
+  comparison.clearance = survey.flight.clearance;
+  const auto routes =
+      request.routes.empty() ? find_routes(request.folder, survey.flight) : request.routes;
+  for (const std::filesystem::path& file : routes) {
+    comparison.files.push_back(file.filename().string());
+    append_flight(comparison.plan, read_route(file, survey));
+  }
+  report("reading " + request.logs.front().string());
+  comparison.track = read_track(request, survey);
+  report(survey.name + ": comparing");
+  comparison.route = flight::compare_route(comparison.plan, comparison.track, request.comparison);
+  find_missed(survey, comparison);
+  comparison.cloud_distance = measure_cloud(request.folder / cloud_name, survey, comparison.track);
+  if (!comparison.missed_views.empty() && !survey.flight.is_fleet()) {
+    report(survey.name + ": planning the patch mission");
+    comparison.patch = plan_patch(survey, comparison.missed_views, folder, stop);
+  }
+  report(survey.name + ": computing coverage");
+  // The scene may be that of another mission. Sensor, vehicle and evaluation are those of the plan.
+  evaluation::SimulationOptions simulation = setup.simulation;
+  std::filesystem::path scene_folder;
+  if (request.truth) {
+    simulation.scene = config::read_mission(*request.truth).scene();
+    scene_folder = request.truth->parent_path();
+  }
+  comparison.no_coverage = find_obstacle(simulation, comparison.plan);
+  if (comparison.no_coverage.empty()) {
+    comparison.coverage =
+        compute_coverage(CoverageSimulation(simulation, setup.run, scene_folder, stop), comparison);
+  }
+  return comparison;
+}
+
+}  // namespace skycap::missions::comparison
