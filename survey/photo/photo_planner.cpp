@@ -31,12 +31,16 @@ std::string percent_text(double share) {
 }
 
 /// Returns the number of samples for the selection of photos. It is larger for targets that are
-/// large in relation to a photo.
+/// large in relation to a photo, and smaller for targets that fit into a few photos.
 std::size_t samples_for(double area, double view_distance) {
   constexpr double per_square = 1000.0;  // Samples in a square with side d.
-  constexpr double min_samples = 8000.0, max_samples = 20000.0;
-  return static_cast<std::size_t>(
-      std::clamp(per_square * area / (view_distance * view_distance), min_samples, max_samples));
+  constexpr double usual_samples = 8000.0, max_samples = 20000.0;
+  constexpr double small = 4.0, min_samples = 2000.0;  // Targets below 4 d^2 are small.
+  const double squares = area / (view_distance * view_distance);
+  if (squares < small) {
+    return static_cast<std::size_t>(std::max(min_samples, usual_samples * squares / small));
+  }
+  return static_cast<std::size_t>(std::clamp(per_square * squares, usual_samples, max_samples));
 }
 
 std::size_t candidates_for(std::size_t samples) {
@@ -265,11 +269,16 @@ class Planner {
                   [&] { report("choosing photos: " + std::to_string(choice.chosen().size())); });
     result_.greedy_photos = choice.chosen().size();
     report("removing photos: " + std::to_string(choice.chosen().size()));
-    // Each round changes a part of a large plan.
-    constexpr std::size_t photos_per_share = 100;
-    const std::size_t shares = std::max<std::size_t>(1, result_.greedy_photos / photos_per_share);
-    choice.destroy_and_repair({shares * options_.repair_rounds, run_.seed}, run_.stop);
+    choice.destroy_and_repair({repair_rounds(result_.greedy_photos), run_.seed}, run_.stop);
     result_.repaired_photos = choice.chosen().size();
+  }
+
+  /// Returns the number of rounds of the search for a plan. Each round changes a part of a large
+  /// plan, and small plans have few parts.
+  std::size_t repair_rounds(std::size_t photos) const {
+    constexpr std::size_t photos_per_share = 100, few_photos = 50, rounds_per_photo = 18;
+    if (photos < few_photos) return std::min(options_.repair_rounds, rounds_per_photo * photos);
+    return options_.repair_rounds * std::max<std::size_t>(1, photos / photos_per_share);
   }
 
   double attainable_share() const {
@@ -460,7 +469,9 @@ class Planner {
     limits.enough_satisfied = all.satisfied();
     pruned.greedy(limits);
     constexpr std::size_t part_of_rounds = 3;  // The photos are only compared with the plan.
-    pruned.destroy_and_repair({options_.repair_rounds / part_of_rounds, run_.seed}, run_.stop);
+    const std::size_t rounds =
+        std::min(options_.repair_rounds, repair_rounds(pruned.chosen().size()));
+    pruned.destroy_and_repair({rounds / part_of_rounds, run_.seed}, run_.stop);
     return pruned;
   }
 

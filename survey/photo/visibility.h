@@ -34,8 +34,13 @@ IndexLists transposed(const IndexLists& lists, std::size_t count);
 
 /// Returns the observation of a sample from a photo at `position`, without testing whether the
 /// photo observes it.
-Observation make_observation(const Eigen::Vector3d& position, std::uint32_t photo,
-                             const TargetSamples& samples, std::size_t sample);
+inline Observation make_observation(const Eigen::Vector3d& position, std::uint32_t photo,
+                                    const TargetSamples& samples, std::size_t sample) {
+  const Eigen::Vector3f line = position.cast<float>() - samples.points[sample];
+  const float distance = line.norm();
+  const Eigen::Vector3f ray = line / distance;
+  return {ray, distance, samples.normals[sample].dot(ray), photo};
+}
 
 /// Tests whether photos observe samples. An observed sample projects into the image without a
 /// border of 1.5% on each side. The angle of incidence is within its limit, and the distance is at
