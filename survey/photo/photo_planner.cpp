@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <utility>
 
 #include "geometry/angle.h"
@@ -316,19 +317,55 @@ class Planner {
     constexpr std::size_t min_degree = 3;
     IndexLists observed = observed_samples(observer, result_.views, run_.threads);
     if (options_.poses == PosesGiven::unknown && !options_.flown_pattern) {
+      result_.graph = view_graph(result_.views, observed, chosen_on_, rule, run_.threads);
+      std::vector<geometry::View> candidates = fans(result_.graph);
+      IndexLists seen = observed_samples(observer, candidates, run_.threads);
+      candidates.insert(candidates.end(), problem.candidates.begin(), problem.candidates.end());
+      seen.append(problem.observed);
+      // A plan that requires more photos to connect it than it has is not worth the search.
       const std::size_t room =
-          options_.max_photos - std::min(options_.max_photos, result_.views.size());
-      const std::vector<std::uint32_t> added = connecting_photos(
-          result_.views, observed, problem.candidates, problem.observed, chosen_on_, rule,
-          min_degree, rule_.same_position(), room, run_.threads);
-      for (const std::uint32_t c : added) result_.views.push_back(problem.candidates[c]);
+          std::min(result_.views.size(),
+                   options_.max_photos - std::min(options_.max_photos, result_.views.size()));
+      const std::vector<std::uint32_t> added =
+          connecting_photos(result_.views, observed, candidates, seen, chosen_on_, rule, min_degree,
+                            rule_.same_position(), room, run_.threads);
+      for (const std::uint32_t c : added) result_.views.push_back(candidates[c]);
       result_.connecting = added.size();
       observed = observed_samples(observer, result_.views, run_.threads);
     }
     result_.graph = view_graph(result_.views, observed, chosen_on_, rule, run_.threads);
-    result_.matching_pairs =
-        shared_pairs(result_.views, observed, chosen_on_, min_shared_to_match, run_.threads);
+    result_.matching_pairs = matchable_pairs(result_.views, observed, chosen_on_, rule,
+                                             min_matchable_to_match, run_.threads);
     warn_of_graph(min_degree);
+  }
+
+  /// Returns fans of photos between each photo and the closest ones that do not register with it.
+  std::vector<geometry::View> fans(const ViewGraph& graph) const {
+    constexpr std::size_t fans_each = 4;
+    std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
+    for (std::uint32_t i = 0; i < graph.photos; ++i) {
+      std::vector<std::pair<double, std::uint32_t>> others;
+      for (std::uint32_t j = 0; j < graph.photos; ++j) {
+        if (graph.part[i] == graph.part[j] && graph.is_registered[i] == graph.is_registered[j]) {
+          continue;
+        }
+        const geometry::View &a = result_.views[i], &b = result_.views[j];
+        others.emplace_back((a.position - b.position).norm() +
+                                0.5 * rule_.view_distance * (a.direction - b.direction).norm(),
+                            j);
+      }
+      std::ranges::sort(others);
+      for (std::size_t k = 0; k < std::min(fans_each, others.size()); ++k) {
+        pairs.emplace(std::min(i, others[k].second), std::max(i, others[k].second));
+      }
+    }
+    std::vector<geometry::View> result;
+    for (const auto& [i, j] : pairs) {
+      const std::vector<geometry::View> fan =
+          photos_between(result_.views[i], result_.views[j], rule_.view_distance, site_.space);
+      result.insert(result.end(), fan.begin(), fan.end());
+    }
+    return result;
   }
 
   void warn_of_graph(std::size_t min_degree) {

@@ -26,6 +26,12 @@ struct IndexLists {
   std::span<const std::uint32_t> operator[](std::size_t list) const {
     return std::span(items).subspan(begin[list], begin[list + 1] - begin[list]);
   }
+  /// Appends the lists of `other`.
+  void append(const IndexLists& other) {
+    const auto size = static_cast<std::uint32_t>(items.size());
+    for (std::size_t i = 0; i < other.size(); ++i) begin.push_back(size + other.begin[i + 1]);
+    items.insert(items.end(), other.items.begin(), other.items.end());
+  }
 };
 
 /// Returns the transposed lists: list i of the result contains the indices of the lists that
