@@ -36,10 +36,11 @@ std::string percent_text(double share) {
 std::size_t samples_for(double area, double view_distance) {
   constexpr double per_square = 1000.0;  // Samples in a square with side d.
   constexpr double usual_samples = 8000.0, max_samples = 20000.0;
-  constexpr double small = 4.0, min_samples = 2000.0;  // Targets below 4 d^2 are small.
+  constexpr double small = 4.0, min_samples = 1500.0;  // Targets below 4 d^2 are small.
   const double squares = area / (view_distance * view_distance);
   if (squares < small) {
-    return static_cast<std::size_t>(std::max(min_samples, usual_samples * squares / small));
+    const double share = squares / small;
+    return static_cast<std::size_t>(std::max(min_samples, usual_samples * share * share));
   }
   return static_cast<std::size_t>(std::clamp(per_square * squares, usual_samples, max_samples));
 }
