@@ -260,8 +260,11 @@ class Planner {
       return;
     }
     PhotoChoice::Limits limits;
-    constexpr double min_gain = 0.002;  // Fraction of the samples.
-    limits.min_gain = min_gain * static_cast<double>(chosen_on_.size());
+    // One photo observes a small fraction of the samples of a large target.
+    constexpr double min_gain = 0.002, large = 20.0;  // Fraction of the samples; area in d^2.
+    const double d = rule_.view_distance, squares = result_.surface_area / (d * d);
+    limits.min_gain =
+        min_gain * static_cast<double>(chosen_on_.size()) * std::min(1.0, large / squares);
     limits.max_photos = options_.max_photos;
     if (options_.target_share < 1.0) {
       limits.enough_satisfied = static_cast<std::size_t>(std::ceil(
