@@ -82,10 +82,6 @@ std::string colmap_pairs(const PhotoPlan& plan, std::span<const survey::photo::P
                          const std::string& extension) {
   std::string text;
   for (const survey::photo::PhotoPair& pair : pairs) {
-    if (pair.shared < survey::photo::min_shared_to_match ||
-        pair.parallax > survey::photo::max_parallax_to_match) {
-      continue;
-    }
     text += image_name(plan.photos.at(pair.first), extension) + " " +
             image_name(plan.photos.at(pair.second), extension) + "\n";
   }

@@ -31,8 +31,7 @@ std::string colmap_camera_parameters(const geometry::PhotoCameraConfig& camera);
 std::string colmap_images(const survey::photo::PhotoPlan& plan,
                           const std::string& extension = ".jpg");
 
-/// Returns pairs.txt: the names of both images of each pair to match, one pair per line. See
-/// survey::photo::min_shared_to_match and max_parallax_to_match.
+/// Returns pairs.txt: the names of both images of each pair to match, one pair per line.
 std::string colmap_pairs(const survey::photo::PhotoPlan& plan,
                          std::span<const survey::photo::PhotoPair> pairs,
                          const std::string& extension = ".jpg");

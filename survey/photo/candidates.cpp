@@ -98,4 +98,23 @@ std::vector<geometry::View> candidate_photos(const Observer& observer, const Pho
   return result;
 }
 
+std::vector<geometry::View> photos_between(const geometry::View& first,
+                                           const geometry::View& second, double distance,
+                                           const PhotoSpace& space) {
+  constexpr int steps = 4;
+  const Vector3d start = first.position + distance * first.direction;
+  const Vector3d end = second.position + distance * second.direction;
+  std::vector<geometry::View> result;
+  for (int i = 1; i < steps; ++i) {
+    const double share = static_cast<double>(i) / steps;
+    const Vector3d direction = (1.0 - share) * first.direction + share * second.direction;
+    constexpr double min_length = 0.1;  // Opposite directions have no direction between them.
+    if (direction.norm() < min_length) continue;
+    const Vector3d unit = direction.normalized();
+    const geometry::View view{(1.0 - share) * start + share * end - distance * unit, unit};
+    if (space.allows(view)) result.push_back(view);
+  }
+  return result;
+}
+
 }  // namespace skycap::survey::photo

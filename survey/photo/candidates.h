@@ -46,4 +46,11 @@ struct CandidateOptions {
 std::vector<geometry::View> candidate_photos(const Observer& observer, const PhotoSpace& space,
                                              const CandidateOptions& options);
 
+/// Returns a fan of allowed photos between two photos, for example around a corner. Directions and
+/// the points at `distance` [m] along them are interpolated, so that the photos remain at this
+/// distance from the interpolated points.
+std::vector<geometry::View> photos_between(const geometry::View& first,
+                                           const geometry::View& second, double distance,
+                                           const PhotoSpace& space);
+
 }  // namespace skycap::survey::photo

@@ -341,7 +341,7 @@ struct PhotoChoice::Impl {
   };
 
   Lack remove_all(std::span<const std::uint32_t> photos, Search& search);
-  std::vector<std::uint32_t> promising(const Lack& lack) const;
+  std::vector<std::uint32_t> promising(const Lack& lack, std::size_t photos) const;
   void repair_once(geometry::RandomNumbers& random, Search& search);
 
   const PhotoChoiceProblem& problem;
@@ -378,8 +378,11 @@ PhotoChoice::Impl::Lack PhotoChoice::Impl::remove_all(std::span<const std::uint3
 }
 
 /// Returns the candidates that observe the largest weight of these samples, in ascending order.
-std::vector<std::uint32_t> PhotoChoice::Impl::promising(const Lack& lack) const {
-  constexpr std::size_t max_candidates = 400;
+/// `photos` is the size of the plan.
+std::vector<std::uint32_t> PhotoChoice::Impl::promising(const Lack& lack,
+                                                        std::size_t photos) const {
+  constexpr std::size_t few_photos = 50, few_candidates = 200, many_candidates = 400;
+  const std::size_t max_candidates = photos < few_photos ? few_candidates : many_candidates;
   std::vector<std::int64_t> weight(problem.candidates.size(), 0);
   for (std::size_t i = 0; i < lack.samples.size(); ++i) {
     for (const std::uint32_t c : problem.observers[lack.samples[i]]) weight[c] += lack.weights[i];
@@ -412,7 +415,7 @@ void PhotoChoice::Impl::repair_once(geometry::RandomNumbers& random, Search& sea
   ++search.round;
   const std::vector<std::uint32_t> removed = neighbourhood(centre, count);
   Lack lack = remove_all(removed, search);
-  std::vector<std::uint32_t> candidates = promising(lack);
+  std::vector<std::uint32_t> candidates = promising(lack, before);
   std::vector<float> factors(candidates.size());
   for (float& factor : factors) factor = static_cast<float>(1.0 + noise * draws.uniform());
   search.gains.start(std::move(lack.samples), std::move(lack.weights), std::move(candidates),

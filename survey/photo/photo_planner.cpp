@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <utility>
 
 #include "geometry/angle.h"
@@ -31,12 +32,17 @@ std::string percent_text(double share) {
 }
 
 /// Returns the number of samples for the selection of photos. It is larger for targets that are
-/// large in relation to a photo.
+/// large in relation to a photo, and smaller for targets that fit into a few photos.
 std::size_t samples_for(double area, double view_distance) {
   constexpr double per_square = 1000.0;  // Samples in a square with side d.
-  constexpr double min_samples = 8000.0, max_samples = 20000.0;
-  return static_cast<std::size_t>(
-      std::clamp(per_square * area / (view_distance * view_distance), min_samples, max_samples));
+  constexpr double usual_samples = 8000.0, max_samples = 20000.0;
+  constexpr double small = 4.0, min_samples = 1500.0;  // Targets below 4 d^2 are small.
+  const double squares = area / (view_distance * view_distance);
+  if (squares < small) {
+    const double share = squares / small;
+    return static_cast<std::size_t>(std::max(min_samples, usual_samples * share * share));
+  }
+  return static_cast<std::size_t>(std::clamp(per_square * squares, usual_samples, max_samples));
 }
 
 std::size_t candidates_for(std::size_t samples) {
@@ -254,8 +260,11 @@ class Planner {
       return;
     }
     PhotoChoice::Limits limits;
-    constexpr double min_gain = 0.002;  // Fraction of the samples.
-    limits.min_gain = min_gain * static_cast<double>(chosen_on_.size());
+    // One photo observes a small fraction of the samples of a large target.
+    constexpr double min_gain = 0.002, large = 20.0;  // Fraction of the samples; area in d^2.
+    const double d = rule_.view_distance, squares = result_.surface_area / (d * d);
+    limits.min_gain =
+        min_gain * static_cast<double>(chosen_on_.size()) * std::min(1.0, large / squares);
     limits.max_photos = options_.max_photos;
     if (options_.target_share < 1.0) {
       limits.enough_satisfied = static_cast<std::size_t>(std::ceil(
@@ -265,11 +274,16 @@ class Planner {
                   [&] { report("choosing photos: " + std::to_string(choice.chosen().size())); });
     result_.greedy_photos = choice.chosen().size();
     report("removing photos: " + std::to_string(choice.chosen().size()));
-    // Each round changes a part of a large plan.
-    constexpr std::size_t photos_per_share = 100;
-    const std::size_t shares = std::max<std::size_t>(1, result_.greedy_photos / photos_per_share);
-    choice.destroy_and_repair({shares * options_.repair_rounds, run_.seed}, run_.stop);
+    choice.destroy_and_repair({repair_rounds(result_.greedy_photos), run_.seed}, run_.stop);
     result_.repaired_photos = choice.chosen().size();
+  }
+
+  /// Returns the number of rounds of the search for a plan. Each round changes a part of a large
+  /// plan, and small plans have few parts.
+  std::size_t repair_rounds(std::size_t photos) const {
+    constexpr std::size_t photos_per_share = 100, few_photos = 50, rounds_per_photo = 18;
+    if (photos < few_photos) return std::min(options_.repair_rounds, rounds_per_photo * photos);
+    return options_.repair_rounds * std::max<std::size_t>(1, photos / photos_per_share);
   }
 
   double attainable_share() const {
@@ -307,19 +321,55 @@ class Planner {
     constexpr std::size_t min_degree = 3;
     IndexLists observed = observed_samples(observer, result_.views, run_.threads);
     if (options_.poses == PosesGiven::unknown && !options_.flown_pattern) {
+      result_.graph = view_graph(result_.views, observed, chosen_on_, rule, run_.threads);
+      std::vector<geometry::View> candidates = fans(result_.graph);
+      IndexLists seen = observed_samples(observer, candidates, run_.threads);
+      candidates.insert(candidates.end(), problem.candidates.begin(), problem.candidates.end());
+      seen.append(problem.observed);
+      // A plan that requires more photos to connect it than it has is not worth the search.
       const std::size_t room =
-          options_.max_photos - std::min(options_.max_photos, result_.views.size());
-      const std::vector<std::uint32_t> added = connecting_photos(
-          result_.views, observed, problem.candidates, problem.observed, chosen_on_, rule,
-          min_degree, rule_.same_position(), room, run_.threads);
-      for (const std::uint32_t c : added) result_.views.push_back(problem.candidates[c]);
+          std::min(result_.views.size(),
+                   options_.max_photos - std::min(options_.max_photos, result_.views.size()));
+      const std::vector<std::uint32_t> added =
+          connecting_photos(result_.views, observed, candidates, seen, chosen_on_, rule, min_degree,
+                            rule_.same_position(), room, run_.threads);
+      for (const std::uint32_t c : added) result_.views.push_back(candidates[c]);
       result_.connecting = added.size();
       observed = observed_samples(observer, result_.views, run_.threads);
     }
     result_.graph = view_graph(result_.views, observed, chosen_on_, rule, run_.threads);
-    result_.matching_pairs =
-        shared_pairs(result_.views, observed, chosen_on_, min_shared_to_match, run_.threads);
+    result_.matching_pairs = matchable_pairs(result_.views, observed, chosen_on_, rule,
+                                             min_matchable_to_match, run_.threads);
     warn_of_graph(min_degree);
+  }
+
+  /// Returns fans of photos between each photo and the closest ones that do not register with it.
+  std::vector<geometry::View> fans(const ViewGraph& graph) const {
+    constexpr std::size_t fans_each = 4;
+    std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
+    for (std::uint32_t i = 0; i < graph.photos; ++i) {
+      std::vector<std::pair<double, std::uint32_t>> others;
+      for (std::uint32_t j = 0; j < graph.photos; ++j) {
+        if (graph.part[i] == graph.part[j] && graph.is_registered[i] == graph.is_registered[j]) {
+          continue;
+        }
+        const geometry::View &a = result_.views[i], &b = result_.views[j];
+        others.emplace_back((a.position - b.position).norm() +
+                                0.5 * rule_.view_distance * (a.direction - b.direction).norm(),
+                            j);
+      }
+      std::ranges::sort(others);
+      for (std::size_t k = 0; k < std::min(fans_each, others.size()); ++k) {
+        pairs.emplace(std::min(i, others[k].second), std::max(i, others[k].second));
+      }
+    }
+    std::vector<geometry::View> result;
+    for (const auto& [i, j] : pairs) {
+      const std::vector<geometry::View> fan =
+          photos_between(result_.views[i], result_.views[j], rule_.view_distance, site_.space);
+      result.insert(result.end(), fan.begin(), fan.end());
+    }
+    return result;
   }
 
   void warn_of_graph(std::size_t min_degree) {
@@ -460,7 +510,9 @@ class Planner {
     limits.enough_satisfied = all.satisfied();
     pruned.greedy(limits);
     constexpr std::size_t part_of_rounds = 3;  // The photos are only compared with the plan.
-    pruned.destroy_and_repair({options_.repair_rounds / part_of_rounds, run_.seed}, run_.stop);
+    const std::size_t rounds =
+        std::min(options_.repair_rounds, repair_rounds(pruned.chosen().size()));
+    pruned.destroy_and_repair({rounds / part_of_rounds, run_.seed}, run_.stop);
     return pruned;
   }
 

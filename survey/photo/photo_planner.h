@@ -136,7 +136,7 @@ struct PhotoPlanResult {
   std::vector<CurvePoint> curve;
   CoverBound bound;  ///< Lower bound of the photos, without connecting photos.
   ViewGraph graph;
-  /// Pairs of views that share at least a fifth of the smaller sample set, for matching.
+  /// Pairs of views for the matcher, see min_matchable_to_match.
   std::vector<PhotoPair> matching_pairs;
   std::vector<PatternResult> patterns;
   std::vector<std::string> warnings;  ///< Warnings for the user.

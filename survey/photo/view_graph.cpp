@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <optional>
 #include <set>
 #include <utility>
 
@@ -49,34 +48,26 @@ std::vector<PhotoNode> make_nodes(std::span<const geometry::View> photos,
   return nodes;
 }
 
-/// Returns the pair, or nullopt if it shares too few samples.
-std::optional<PhotoPair> make_pair_of_photos(const PhotoNode& a, const PhotoNode& b,
-                                             const TargetSamples& samples, double min_shared) {
+/// Returns the samples that can be matched as a fraction of the smaller set of samples. Returns 0
+/// for a fraction below `min_matchable`.
+double matchable_share(const PhotoNode& a, const PhotoNode& b, const TargetSamples& samples,
+                       const EdgeRule& rule, double min_matchable) {
   const std::size_t smaller = std::min(a.observed.size(), b.observed.size());
-  if (smaller == 0) return std::nullopt;
-  const std::size_t shared = count_shared(a.bits, b.bits);
-  const double fraction = static_cast<double>(shared) / static_cast<double>(smaller);
-  if (shared == 0 || fraction < min_shared) return std::nullopt;
-  double parallax = 0.0, distance_a = 0.0, distance_b = 0.0;
+  const double wanted = min_matchable * static_cast<double>(smaller);
+  if (smaller == 0 || static_cast<double>(count_shared(a.bits, b.bits)) < wanted) return 0.0;
+  const auto max_scale = static_cast<float>(rule.max_scale);
+  std::size_t count = 0;
   for (const std::uint32_t s : a.observed) {
     if ((b.bits[s / 64] >> (s % 64) & 1U) == 0) continue;
-    const Vector3f to_a = a.view->position.cast<float>() - samples.points[s];
-    const Vector3f to_b = b.view->position.cast<float>() - samples.points[s];
-    const double l_a = to_a.norm(), l_b = to_b.norm();
-    parallax += std::acos(std::clamp(to_a.dot(to_b) / (l_a * l_b), -1.0, 1.0));
-    distance_a += l_a;
-    distance_b += l_b;
+    const Observation in_a = make_observation(a.view->position, 0, samples, s);
+    const Observation in_b = make_observation(b.view->position, 1, samples, s);
+    const float nearer = std::min(in_a.distance, in_b.distance);
+    const float farther = std::max(in_a.distance, in_b.distance);
+    if (farther <= max_scale * nearer && transition_tilt(in_a, in_b) <= rule.max_tilt) ++count;
   }
-  PhotoPair pair;
-  pair.shared = fraction;
-  pair.parallax = parallax / static_cast<double>(shared);
-  pair.scale = std::max(distance_a, distance_b) / std::min(distance_a, distance_b);
-  return pair;
-}
-
-bool keeps(const PhotoPair& pair, const EdgeRule& rule) {
-  return pair.shared >= rule.min_shared && pair.parallax <= rule.max_parallax &&
-         pair.scale <= rule.max_scale;
+  return static_cast<double>(count) >= wanted
+             ? static_cast<double>(count) / static_cast<double>(smaller)
+             : 0.0;
 }
 
 /// Disjoint sets: union-find with the lowest member as root.
@@ -154,18 +145,29 @@ Neighbours make_neighbours(const ViewGraph& graph) {
 
 }  // namespace
 
-std::vector<PhotoPair> shared_pairs(std::span<const geometry::View> photos,
-                                    const IndexLists& observed, const TargetSamples& samples,
-                                    double min_shared, unsigned threads) {
+double transition_tilt(const Observation& a, const Observation& b) {
+  // In the plane, u = ray - cosine normal. A photo maps the metric of the plane to I - u u^T, up to
+  // its scale. The squares of the singular values of the map from image a to image b are the
+  // eigenvalues of (I - u_a u_a^T)^-1 (I - u_b u_b^T).
+  const double a_squared = double{a.cosine} * a.cosine, b_squared = double{b.cosine} * b.cosine;
+  const double product = double{a.ray.dot(b.ray)} - double{a.cosine} * b.cosine;
+  const double trace = 1.0 + b_squared + (1.0 - a_squared - product * product) / a_squared;
+  const double determinant = b_squared / a_squared;
+  const double root = std::sqrt(std::max(0.0, 0.25 * trace * trace - determinant));
+  return std::max(1.0, (0.5 * trace + root) / std::sqrt(determinant));
+}
+
+std::vector<PhotoPair> matchable_pairs(std::span<const geometry::View> photos,
+                                       const IndexLists& observed, const TargetSamples& samples,
+                                       const EdgeRule& rule, double min_matchable,
+                                       unsigned threads) {
   const std::vector<PhotoNode> nodes = make_nodes(photos, observed, samples.size(), threads);
   std::vector<std::vector<PhotoPair>> of_first(photos.size());
   geometry::parallel_for(photos.size(), threads, [&](std::size_t i) {
     for (std::size_t j = i + 1; j < photos.size(); ++j) {
-      if (auto pair = make_pair_of_photos(nodes[i], nodes[j], samples, min_shared)) {
-        pair->first = static_cast<std::uint32_t>(i);
-        pair->second = static_cast<std::uint32_t>(j);
-        of_first[i].push_back(*pair);
-      }
+      const double share = matchable_share(nodes[i], nodes[j], samples, rule, min_matchable);
+      if (share == 0.0) continue;
+      of_first[i].push_back({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j), share});
     }
   });
   std::vector<PhotoPair> pairs;
@@ -183,8 +185,8 @@ ViewGraph view_graph(std::span<const geometry::View> photos, const IndexLists& o
   graph.photos = photos.size();
   graph.degree.assign(photos.size(), 0);
   Parts parts(photos.size());
-  for (const PhotoPair& pair : shared_pairs(photos, observed, samples, rule.min_shared, threads)) {
-    if (!keeps(pair, rule)) continue;
+  for (const PhotoPair& pair :
+       matchable_pairs(photos, observed, samples, rule, rule.min_matchable, threads)) {
     graph.edges.push_back(pair);
     ++graph.degree[pair.first];
     ++graph.degree[pair.second];
@@ -199,8 +201,8 @@ ViewGraph view_graph(std::span<const geometry::View> photos, const IndexLists& o
     ++graph.parts[graph.part.back()];
   }
   std::ranges::sort(graph.parts, std::greater());
-  graph.registered =
-      static_cast<std::size_t>(std::ranges::count(largest_registration(make_neighbours(graph)), 1));
+  graph.is_registered = largest_registration(make_neighbours(graph));
+  graph.registered = static_cast<std::size_t>(std::ranges::count(graph.is_registered, 1));
   return graph;
 }
 
@@ -229,8 +231,7 @@ std::vector<std::uint32_t> connecting_photos(std::span<const geometry::View> pho
     }
   };
   const auto connects = [&](const PhotoNode& a, const PhotoNode& b) {
-    const auto pair = make_pair_of_photos(a, b, samples, rule.min_shared);
-    return pair && keeps(*pair, rule);
+    return matchable_share(a, b, samples, rule, rule.min_matchable) > 0.0;
   };
   for (const geometry::View& photo : photos) close_near(photo.position);
   geometry::parallel_for(candidates.size(), threads, [&](std::size_t c) {

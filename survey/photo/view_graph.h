@@ -6,39 +6,44 @@
 #include <span>
 #include <vector>
 
-#include "geometry/angle.h"
 #include "geometry/pose/pose.h"
 #include "survey/photo/visibility.h"
 
 namespace skycap::survey::photo {
 
-/// Pair of photos that share samples.
+/// Pair of photos in which a feature matcher can find the same surface.
 struct PhotoPair {
   std::uint32_t first = 0, second = 0;  ///< Indices of the photos, with first < second.
-  double shared = 0.0;    ///< Shared samples as a fraction of the smaller set of samples.
-  double parallax = 0.0;  ///< Mean parallax over the shared samples [rad].
-  double scale = 1.0;     ///< Ratio of the mean distances to them, at least 1.
+  /// Samples that can be matched, see EdgeRule, as a fraction of the smaller set of samples.
+  double matchable = 0.0;
 };
 
-/// Conditions under which two photos register to each other.
+/// Conditions under which two photos register to each other. A sample can be matched if the affine
+/// map between its images in both photos is moderate: its transition tilt, which is the ratio of
+/// its singular values, and the ratio of the distances. The transition tilt grows with the parallax
+/// and, strongly, with the incidence. Source: Morel and Yu, "ASIFT: a new framework for fully
+/// affine invariant image comparison", SIAM J. Imaging Sciences 2(2), 2009: SIFT features tolerate
+/// about 2. Limits: measured with COLMAP, see docs/development/results/2026-11-26-photo-plans.md.
 struct EdgeRule {
-  double min_shared = 0.5;
-  double max_parallax =
-      30.0 * geometry::radians_per_degree;  ///< Mean over the shared samples [rad].
-  double max_scale = 2.0;
+  double min_matchable = 0.3;  ///< Fraction of the smaller set of samples.
+  double max_tilt = 1.8;       ///< Transition tilt, at least 1.
+  double max_scale = 2.0;      ///< Ratio of the distances, at least 1.
 };
 
-/// Minimum fraction of the smaller photo's samples that a pair must share to be matched, and
-/// maximum mean parallax of a pair [rad]. Other pairs take most of the matching time and seldom
-/// pass geometric verification.
-inline constexpr double min_shared_to_match = 0.2;
-inline constexpr double max_parallax_to_match = 42.0 * geometry::radians_per_degree;
+/// Returns the transition tilt of the images of a plane in two photos, at least 1. The rays are
+/// unit vectors from the plane to the photos, with positive cosines of incidence.
+double transition_tilt(const Observation& a, const Observation& b);
 
-/// Returns all pairs that share at least `min_shared`, sorted by first and second photo. `observed`
-/// contains the samples of each photo.
-std::vector<PhotoPair> shared_pairs(std::span<const geometry::View> photos,
-                                    const IndexLists& observed, const TargetSamples& samples,
-                                    double min_shared, unsigned threads);
+/// Minimum fraction of the smaller photo's samples that can be matched in a pair for the matcher.
+/// Other pairs take most of the matching time and seldom pass geometric verification.
+inline constexpr double min_matchable_to_match = 0.1;
+
+/// Returns all pairs with at least `min_matchable`, sorted by first and second photo. `observed`
+/// contains the samples of each photo. rule.min_matchable is not used.
+std::vector<PhotoPair> matchable_pairs(std::span<const geometry::View> photos,
+                                       const IndexLists& observed, const TargetSamples& samples,
+                                       const EdgeRule& rule, double min_matchable,
+                                       unsigned threads);
 
 struct ViewGraph {
   std::size_t photos = 0;
@@ -50,6 +55,7 @@ struct ViewGraph {
   /// Number of photos that an incremental registration reaches. It starts with an edge and adds
   /// photos with at least two edges to registered photos. Maximum over all edges.
   std::size_t registered = 0;
+  std::vector<char> is_registered;  ///< 1 for each of these photos.
   std::size_t min_degree() const;
   bool is_connected(std::size_t degree_wanted) const {
     return parts.size() <= 1 && min_degree() >= degree_wanted;

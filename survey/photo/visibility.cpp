@@ -23,14 +23,6 @@ IndexLists transposed(const IndexLists& lists, std::size_t count) {
   return result;
 }
 
-Observation make_observation(const Vector3d& position, std::uint32_t photo,
-                             const TargetSamples& samples, std::size_t sample) {
-  const Vector3f line = position.cast<float>() - samples.points[sample];
-  const float distance = line.norm();
-  const Vector3f ray = line / distance;
-  return {ray, distance, samples.normals[sample].dot(ray), photo};
-}
-
 Observer::Observer(const geometry::PhotoCamera& camera, const StereoRule& rule,
                    const geometry::SightLines& obstructions, const TargetSamples& samples)
     : camera_(camera),

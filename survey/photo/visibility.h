@@ -26,6 +26,12 @@ struct IndexLists {
   std::span<const std::uint32_t> operator[](std::size_t list) const {
     return std::span(items).subspan(begin[list], begin[list + 1] - begin[list]);
   }
+  /// Appends the lists of `other`.
+  void append(const IndexLists& other) {
+    const auto size = static_cast<std::uint32_t>(items.size());
+    for (std::size_t i = 0; i < other.size(); ++i) begin.push_back(size + other.begin[i + 1]);
+    items.insert(items.end(), other.items.begin(), other.items.end());
+  }
 };
 
 /// Returns the transposed lists: list i of the result contains the indices of the lists that
@@ -34,8 +40,13 @@ IndexLists transposed(const IndexLists& lists, std::size_t count);
 
 /// Returns the observation of a sample from a photo at `position`, without testing whether the
 /// photo observes it.
-Observation make_observation(const Eigen::Vector3d& position, std::uint32_t photo,
-                             const TargetSamples& samples, std::size_t sample);
+inline Observation make_observation(const Eigen::Vector3d& position, std::uint32_t photo,
+                                    const TargetSamples& samples, std::size_t sample) {
+  const Eigen::Vector3f line = position.cast<float>() - samples.points[sample];
+  const float distance = line.norm();
+  const Eigen::Vector3f ray = line / distance;
+  return {ray, distance, samples.normals[sample].dot(ray), photo};
+}
 
 /// Tests whether photos observe samples. An observed sample projects into the image without a
 /// border of 1.5% on each side. The angle of incidence is within its limit, and the distance is at

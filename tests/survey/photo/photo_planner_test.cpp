@@ -113,6 +113,17 @@ TEST_F(PhotosOfABox, AreTheSameForAnyThreads) {
   EXPECT_EQ(one.figures.completeness, several.figures.completeness);
 }
 
+// One photo of a hall observes less than 0.2% of the gain that all samples offer together.
+TEST_F(PhotosOfABox, SatisfyAlmostAllOfALargeTarget) {
+  site_.target = {};
+  add_box(site_.target, {-60, -20, 0}, {60, 20, 8});
+  walls_.emplace(site_.target, 1);
+  options_.patterns.clear();
+  options_.repair_rounds = 0;
+  const PhotoFigures figures = plan().figures;
+  EXPECT_GE(figures.attainable_share(figures.satisfied), 0.95);
+}
+
 TEST_F(PhotosOfABox, RegisterToOneAnotherWhenPosesAreUnknown) {
   options_.poses = PosesGiven::unknown;
   const PhotoPlanResult result = plan();
