@@ -281,9 +281,7 @@ class WpmlWriter {
       add_photo(record, "inspection");
     }
     if (index == filmed_.last) {
-      pugi::xml_node record = action("stopRecord");
-      add(record, "payloadPositionIndex", "0");
-      add_lens(record);
+      add(action("stopRecord"), "payloadPositionIndex", "0");
     }
   }
 

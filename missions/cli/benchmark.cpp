@@ -16,9 +16,12 @@
 #include "missions/batch/benchmark/methods.h"
 #include "missions/batch/benchmark/other_results.h"
 #include "missions/batch/benchmark/uniform_comparison.h"
+#include "missions/cli/benchmark_inspections.h"
 #include "missions/cli/commands.h"
 #include "missions/cli/survey_batch.h"
 #include "missions/cli/write_page.h"
+#include "missions/config/mission_document.h"
+#include "missions/config/mission_reader.h"
 #include "missions/config/resolve.h"
 #include "missions/support/json_text.h"
 #include "missions/version.h"
@@ -349,6 +352,9 @@ class Benchmark {
 
 int benchmark(const BenchmarkOptions& options, const Console& console) {
   const PendingResultsGuard results(console);
+  if (config::read_mission_document(options.missions.front(), options.overrides).is_inspection()) {
+    return benchmark_inspections(options, console);
+  }
   return Benchmark(options, console).run();
 }
 

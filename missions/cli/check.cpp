@@ -24,6 +24,7 @@
 #include "missions/inspection/inspection_site.h"
 #include "missions/package/fleet/timetable_verification.h"
 #include "missions/package/fleet_mission.h"
+#include "missions/package/inspection_summary.h"
 #include "missions/package/package.h"
 #include "missions/package/settings.h"
 #include "missions/package/verification/check_returns.h"
@@ -45,6 +46,12 @@ flight::FlightFacts make_flight_facts(const flight::FlightOptions& flight,
   flight::FlightFacts facts = flight.facts();
   const std::filesystem::path folder = route.parent_path();
   if (!std::filesystem::exists(folder / package::summary_name)) return facts;
+  if (const auto inspection = package::read_inspection_summary(folder, {})) {
+    if (facts.is_pad_known || !inspection->pad) return facts;
+    facts.pad = *inspection->pad;
+    facts.is_pad_known = true;
+    return facts;
+  }
   package::PackageSummary summary = package::read_package_summary(folder, {});
   facts.views = summary.capture_points();
   if (!facts.is_pad_known && summary.pad) {

@@ -92,7 +92,7 @@ void add_benchmark(CLI::App& app, const Console& console, Action& action) {
   command
       ->add_option("--also", options->also,
                    "Results of another program (JSON, docs/howto/compare-planners.md), shown with "
-                   "the others; repeatable")
+                   "the others. For inspections: MISSION=FILE with a flight; repeatable")
       ->type_size(1)
       ->allow_extra_args(false);
   command

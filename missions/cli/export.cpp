@@ -1,11 +1,14 @@
 #include "flight/export/export.h"
 
 #include <algorithm>
+#include <span>
+#include <string_view>
 
 #include "geometry/error.h"
 #include "geometry/io/output_folder.h"
 #include "missions/cli/command_options.h"
 #include "missions/cli/commands.h"
+#include "missions/inspection/inspection_package.h"
 #include "missions/package/fleet/timetable_verification.h"
 #include "missions/package/fleet_mission.h"
 #include "missions/package/flight_report.h"
@@ -76,6 +79,37 @@ void check_lost(const ExportOptions& options) {
   }
 }
 
+int export_inspection(const ExportOptions& options, std::span<const flight::Format> formats,
+                      const inspection::InspectionPackage& package, const Console& console,
+                      ProgressLine& progress) {
+  if (options.lost) {
+    throw Error(ErrorKind::bad_usage, "--lost requires a fleet, and " + options.package.string() +
+                                          " is the inspection of one vehicle; remove the option");
+  }
+  geometry::OutputFolder folder(options.out.value_or(options.package));
+  progress.show(package.setup.name + ": planning the flight");
+  inspection::InspectionExport exported;
+  try {
+    exported = inspection::export_inspection(package, formats, console.stop, folder);
+  } catch (const Error& error) {
+    throw Error(error.kind(), options.package.string() + ": " + error.what());
+  }
+  folder.replace([&](std::string_view name) {
+    return std::ranges::any_of(
+        formats, [&](flight::Format format) { return package::is_flight_file(name, format); });
+  });
+  folder.commit();
+  progress.clear();
+  console.out << inspection::export_text(package, exported) << "  results   "
+              << folder.path().string() << "\n";
+  if (exported.flight) {
+    console.out << package::pilot_text(package.setup.flight(), exported.flight->mission,
+                                       exported.warnings);
+  }
+  console.out << std::flush;
+  return 0;
+}
+
 }  // namespace
 
 int export_package(const ExportOptions& options, const Console& console) {
@@ -85,6 +119,9 @@ int export_package(const ExportOptions& options, const Console& console) {
 
   ProgressLine progress(console, false);
   progress.show("reading " + options.package.string());
+  if (const auto package = inspection::read_inspection(options.package, options.overrides)) {
+    return export_inspection(options, formats, *package, console, progress);
+  }
   const package::PackagedSurvey survey = package::read_package(options.package, options.overrides);
   const Task task = make_task(options, survey);
   geometry::OutputFolder folder(options.out.value_or(options.package));

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,6 +16,8 @@
 #include "missions/cli/fly_test_report.h"
 #include "missions/config/resolve.h"
 #include "missions/evaluation/survey_scene.h"
+#include "missions/inspection/inspection_flight.h"
+#include "missions/inspection/inspection_package.h"
 #include "missions/package/fleet/timetable_verification.h"
 #include "missions/package/fleet_mission.h"
 #include "missions/package/package.h"
@@ -52,13 +55,46 @@ std::vector<std::filesystem::path> route_files(const std::filesystem::path& fold
                                        "with flight.vehicle and a georeference");
 }
 
+/// Flight of a survey or an inspection, with the space in which its files are verified.
+struct TestedMission {
+  std::string name;
+  flight::FlightOptions flight;
+  session::RunOptions run;
+  std::vector<geometry::View> views;
+  Eigen::Vector3d pad = Eigen::Vector3d::Zero();
+  std::shared_ptr<const flight::FreeSpace> space;
+};
+
+TestedMission read_mission_package(const FlyTestCommandOptions& options) {
+  const auto inspected = inspection::read_inspection(options.package, options.overrides);
+  if (!inspected) {
+    package::PackagedSurvey survey = package::read_package(options.package, options.overrides);
+    return {std::move(survey.name),
+            std::move(survey.flight),
+            survey.run,
+            std::move(survey.views),
+            survey.pad,
+            std::make_shared<const flight::MeasuredSpace>(std::move(survey.measured))};
+  }
+  if (!inspected->pad) {
+    throw Error(ErrorKind::bad_file,
+                (options.package / package::summary_name).string() +
+                    " is an inspection without route files; see inspection.formats_not_written in "
+                    "this file for the reason");
+  }
+  // Without views: the waypoints of an inspection take no photos.
+  return {inspected->setup.name, inspection::inspection_flight_options(*inspected->space),
+          inspected->setup.run,  {},
+          *inspected->pad,       {inspected->space, &inspected->space->space()}};
+}
+
 /// Package to be tested, with its free space and the spaces that flights are evaluated against.
 class TestedPackage {
  public:
-  TestedPackage(const FlyTestCommandOptions& options, package::PackagedSurvey survey)
+  TestedPackage(const FlyTestCommandOptions& options, TestedMission survey)
       : survey_(std::move(survey)),
         rules_(survey_.flight.rules()),
-        space_({&survey_.measured, &rules_}),
+        space_({survey_.space.get(), &rules_}),
         pad_space_(without_ground(survey_.flight.rules())) {
     if (!options.truth) return;
     const config::MissionSetup truth = config::read_mission(*options.truth);
@@ -132,7 +168,7 @@ class TestedPackage {
     return rtl_profile;
   }
 
-  package::PackagedSurvey survey_;
+  TestedMission survey_;
   flight::KnownSpace rules_;
   flight::JointSpace space_;
   flight::KnownSpace pad_space_;
@@ -224,7 +260,7 @@ void commit(geometry::OutputFolder& folder, bool is_complete) {
 }  // namespace
 
 int fly_test(const FlyTestCommandOptions& options, const Console& console) {
-  const TestedPackage package(options, package::read_package(options.package, options.overrides));
+  const TestedPackage package(options, read_mission_package(options));
   const std::vector<std::filesystem::path> files = route_files(options.package);
   geometry::OutputFolder folder(options.out.value_or(options.package));
   const PendingResultsGuard results(console);

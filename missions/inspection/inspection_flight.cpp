@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <fmt/format.h>
+
 #include "flight/clearance/segment_distance.h"
 #include "flight/export/flight_plan.h"
 #include "geometry/angle.h"
@@ -178,13 +180,32 @@ std::span<const flight::Format> inspection_formats(flight::AutopilotType autopil
   return mavlink;
 }
 
+std::string unsupported_reason(flight::Format format) {
+  switch (format) {
+    case flight::Format::litchi:
+      return "commands neither an even rotation of the camera nor a recording";
+    case flight::Format::kml:
+    case flight::Format::geojson:
+      return "commands neither camera nor speed";
+    default:
+      return "";
+  }
+}
+
+void check_deviation(const InspectionFlight& flight, double allowed) {
+  if (flight.deviation_bound <= allowed) return;
+  throw Error(ErrorKind::bad_geometry,
+              fmt::format("the autopilot's curve could deviate by {:.2f} m from the planned one, "
+                          "and at most {:.2f} m are allowed",
+                          flight.deviation_bound, allowed));
+}
+
 InspectionFlight plan_inspection_flight(const config::MissionSetup& setup,
-                                        const InspectionSpace& space,
-                                        const survey::inspection::InspectionOptions& options,
-                                        const survey::inspection::InspectionPlan& plan,
+                                        const InspectionSpace& space, const PlannedFlight& planned,
                                         const std::stop_token& stop) {
-  const flight::FlightOptions flight = inspection_flight_options(space);
-  const std::vector<flight::CapturePoint> waypoints = make_waypoints(plan.samples);
+  flight::FlightOptions flight = inspection_flight_options(space);
+  if (planned.pad) flight.takeoff = planned.pad;
+  const std::vector<flight::CapturePoint> waypoints = make_waypoints(planned.samples);
   std::vector<geometry::View> views;
   for (const flight::CapturePoint& waypoint : waypoints) views.push_back(waypoint.view);
 
@@ -199,10 +220,9 @@ InspectionFlight plan_inspection_flight(const config::MissionSetup& setup,
     throw Error(ErrorKind::bad_geometry, "no waypoint can be reached" + reason);
   }
   survey::inspection::EvaluationOptions evaluation;
-  evaluation.camera = options.camera;
-  evaluation.limits = options.limits;
+  evaluation.camera = planned.camera;
   evaluation.threads = setup.run.threads;
-  std::vector<std::uint8_t> rules(plan.cloud.size(), 0);
+  std::vector<std::uint8_t> rules(planned.cloud.size(), 0);
   double cut = 0.0;
   for (std::size_t sortie = 0; sortie < route.sorties.size(); ++sortie) {
     const flight::FlightPlan flown = flight_plan(route, sortie, setup.name, flight.site);
@@ -211,16 +231,16 @@ InspectionFlight plan_inspection_flight(const config::MissionSetup& setup,
     constexpr std::size_t min_samples = 4;
     if (samples.size() < min_samples) continue;
     result.recorded_duration += samples.back().time;
-    const auto seen = evaluate_flight(samples, plan.cloud, evaluation).rules_seen;
+    const auto seen = evaluate_flight(samples, planned.cloud, evaluation).rules_seen;
     for (std::size_t i = 0; i < rules.size(); ++i) rules[i] |= seen[i];
   }
   for (const std::uint8_t seen : rules) {
     for (std::size_t rule = 0; rule < sight_rules; ++rule) result.seen[rule] += seen >> rule & 1U;
   }
   // The flight leaves a chord of its samples by at most a dt^2 / 8.
-  const double chord = options.limits.acceleration * survey::inspection::sample_interval *
+  const double chord = planned.acceleration * survey::inspection::sample_interval *
                        survey::inspection::sample_interval / 8.0;
-  result.deviation_bound = sag(plan.samples, waypoints) + cut + chord;
+  result.deviation_bound = sag(planned.samples, waypoints) + cut + chord;
   return result;
 }
 

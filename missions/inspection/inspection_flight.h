@@ -41,18 +41,32 @@ struct InspectionFlight {
 std::vector<flight::CapturePoint> make_waypoints(
     std::span<const survey::inspection::FlightSample> flight);
 
+/// Planned flight of a camera around a structure.
+struct PlannedFlight {
+  std::span<const survey::inspection::FlightSample> samples;
+  const survey::inspection::StructureCloud& cloud;
+  survey::inspection::InspectionCamera camera;
+  double acceleration = 0.0;           ///< Maximum acceleration [m/s^2].
+  std::optional<Eigen::Vector3d> pad;  ///< Take-off point. Empty: chosen beside the structure.
+};
+
 /// Plans the route of an inspection with verified legs and returns. Throws the errors of
 /// flight::plan_route(), and Error{bad_geometry} if the vehicle cannot reach any waypoint.
 InspectionFlight plan_inspection_flight(const config::MissionSetup& setup,
-                                        const InspectionSpace& space,
-                                        const survey::inspection::InspectionOptions& options,
-                                        const survey::inspection::InspectionPlan& plan,
+                                        const InspectionSpace& space, const PlannedFlight& planned,
                                         const std::stop_token& stop);
+
+/// Throws Error{bad_geometry} if the autopilot's curve could be farther than `allowed` [m] from the
+/// planned one.
+void check_deviation(const InspectionFlight& flight, double allowed);
 
 /// Returns the options of the flight: with stops at corners, in the order of the inspection.
 flight::FlightOptions inspection_flight_options(const InspectionSpace& space);
 
 /// Returns the formats that can express an inspection for an autopilot.
 std::span<const flight::Format> inspection_formats(flight::AutopilotType autopilot);
+
+/// Returns why a format cannot command an inspection for any autopilot. Empty: it can.
+std::string unsupported_reason(flight::Format format);
 
 }  // namespace skycap::missions::inspection

@@ -1,6 +1,8 @@
 #include "missions/inspection/inspection_mission.h"
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -19,14 +21,13 @@ using survey::inspection::InspectionPlan;
 void plan_flight(const config::MissionSetup& setup, const InspectionSpace& space,
                  const std::stop_token& stop, InspectionMission& mission) {
   try {
-    mission.flight = plan_inspection_flight(setup, space, mission.options, mission.plan, stop);
-    if (mission.flight->deviation_bound > mission.options.flown_deviation) {
-      mission.flight_failure = fmt::format(
-          "the autopilot's curve could deviate by {:.2f} m from the planned one, and at most "
-          "{:.2f} m are allowed",
-          mission.flight->deviation_bound, mission.options.flown_deviation);
-      mission.flight.reset();
-    }
+    InspectionFlight flight =
+        plan_inspection_flight(setup, space,
+                               {mission.plan.samples, mission.plan.cloud, mission.options.camera,
+                                mission.options.limits.acceleration, std::nullopt},
+                               stop);
+    check_deviation(flight, mission.options.flown_deviation);
+    mission.flight = std::move(flight);
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::bad_config && error.kind() != ErrorKind::bad_geometry) throw;
     mission.flight_failure = error.what();

@@ -64,9 +64,8 @@ std::string limit_text(const char* name, const LimitUse& use, const char* unit,
 }
 
 /// Returns the states of the flight for the formats of setpoints, by central differences.
-std::vector<flight::TimedState> timed_states(const InspectionPlan& plan) {
+std::vector<flight::TimedState> timed_states(std::span<const FlightSample> samples) {
   std::vector<flight::TimedState> states;
-  const auto& samples = plan.samples;
   constexpr double dt = survey::inspection::sample_interval;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const FlightSample& before = samples[i == 0 ? 0 : i - 1];
@@ -88,9 +87,11 @@ std::vector<flight::TimedState> timed_states(const InspectionPlan& plan) {
 
 /// Formats that are not written, with the reason.
 Json formats_json(const InspectionMission& mission, const package::FlightFiles& files) {
-  Json formats = {{"litchi", "commands neither an even rotation of the camera nor a recording"},
-                  {"kml", "commands neither camera nor speed"},
-                  {"geojson", "commands neither camera nor speed"}};
+  Json formats = Json::object();
+  for (const flight::Format format :
+       {flight::Format::litchi, flight::Format::kml, flight::Format::geojson}) {
+    formats[flight::format_info(format).name] = unsupported_reason(format);
+  }
   if (!mission.flight) {
     for (const char* name : {"plan", "waypoints", "kmz"}) formats[name] = mission.flight_failure;
     return formats;
@@ -268,6 +269,25 @@ Json evaluation_json(const FlightEvaluation& evaluation) {
           {"max_descent_m_s", evaluation.max_descent}};
 }
 
+std::string deviation_text(const InspectionFlight& flight, std::size_t points) {
+  return fmt::format(
+      "{} waypoints, at most {:.2f} m from the planned curve (allowed: {:.2f} m); the flown curve "
+      "sees {} of all points at a limited incidence\n",
+      flight.waypoints, flight.deviation_bound, flown_deviation,
+      percent(share_of(flight.seen[incidence_rule], points)));
+}
+
+std::string stage_setpoints(std::span<const FlightSample> flight, flight::Format format,
+                            geometry::OutputFolder& folder) {
+  const std::vector<flight::TimedState> states = timed_states(flight);
+  const bool is_poses = format == flight::Format::tum, is_ned = format == flight::Format::ned_csv;
+  const std::string name = is_poses ? tum_name : is_ned ? ned_name : enu_name;
+  folder.write(name, is_poses ? write_tum(camera_poses(states))
+                              : write_trajectory_csv(
+                                    states, is_ned ? flight::Frame::ned : flight::Frame::enu));
+  return name;
+}
+
 std::string plan_text(const config::MissionSetup& setup, const InspectionMission& mission) {
   const InspectionPlan& plan = mission.plan;
   const FlightEvaluation& evaluation = plan.evaluation;
@@ -293,12 +313,7 @@ std::string plan_text(const config::MissionSetup& setup, const InspectionMission
                   plan.evaluated_moves, plan.first_duration);
   if (!mission.flight) return text;
   const InspectionFlight& flight = *mission.flight;
-  return text + fmt::format(
-                    "  files     {} waypoints, at most {:.2f} m from the planned curve (allowed: "
-                    "{:.2f} m); "
-                    "the flown curve sees {} of all points at a limited incidence\n",
-                    flight.waypoints, flight.deviation_bound, mission.options.flown_deviation,
-                    percent(share_of(flight.seen[incidence_rule], plan.cloud.size())));
+  return text + "  files     " + deviation_text(flight, plan.cloud.size());
 }
 
 std::string warnings_text(const config::MissionSetup& setup, const InspectionMission& mission) {
@@ -315,13 +330,14 @@ void stage_inspection_mission(const config::MissionSetup& setup, const Inspectio
                               InspectionMission& mission, geometry::OutputFolder& folder) {
   folder.replace([](std::string_view name) {
     return name == package::free_space_name || name == package::report_name ||
-           name == package::field_sheet_name || package::is_flight_file(name);
+           name == package::field_sheet_name || name == package::fly_test_name ||
+           package::is_flight_file(name);
   });
   folder.write(flight_name, write_flight_csv(mission.plan.samples));
-  const std::vector<flight::TimedState> states = timed_states(mission.plan);
-  folder.write(enu_name, write_trajectory_csv(states, flight::Frame::enu));
-  folder.write(ned_name, write_trajectory_csv(states, flight::Frame::ned));
-  folder.write(tum_name, write_tum(camera_poses(states)));
+  for (const flight::Format format :
+       {flight::Format::csv, flight::Format::ned_csv, flight::Format::tum}) {
+    stage_setpoints(mission.plan.samples, format, folder);
+  }
   write_structure(mission.plan, folder);
   if (mission.flight) {
     stage_route_files(setup, space, mission.flight->mission, folder);

@@ -1,10 +1,12 @@
 /// Result files and printed summary of an inspection mission.
 #pragma once
 
+#include <span>
 #include <string>
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "flight/export/export.h"
 #include "geometry/io/output_folder.h"
 #include "missions/config/mission_setup.h"
 #include "missions/inspection/inspection_mission.h"
@@ -17,6 +19,15 @@ inline constexpr const char* structure_name = "structure.ply";
 /// Returns the lines of an evaluation: surface seen, views, distances and limits of motion.
 std::string evaluation_text(const survey::inspection::FlightEvaluation& evaluation);
 nlohmann::ordered_json evaluation_json(const survey::inspection::FlightEvaluation& evaluation);
+
+/// Returns one line: waypoints of the route files, the deviation of the flown curve, and the
+/// fraction of the `points` of the structure that it sees.
+std::string deviation_text(const InspectionFlight& flight, std::size_t points);
+
+/// Stages a flight as setpoints (CSV) or camera poses (TUM), and returns the name of the file.
+/// `format` is csv, ned_csv or tum.
+std::string stage_setpoints(std::span<const survey::inspection::FlightSample> flight,
+                            flight::Format format, geometry::OutputFolder& folder);
 
 /// Returns the printed summary of a plan, without the folder and the warnings.
 std::string plan_text(const config::MissionSetup& setup, const InspectionMission& mission);

@@ -1,11 +1,11 @@
 #include "missions/inspection/inspection_site.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
-#include <set>
-#include <tuple>
+#include <unordered_set>
 #include <utility>
 
 #include "flight/clearance/prior_obstacle.h"
@@ -27,15 +27,31 @@ using Eigen::Vector3f;
 constexpr std::size_t max_points = 150'000;
 constexpr std::size_t max_obstacle_points = 500'000;
 
+using Voxel = std::array<std::int64_t, 3>;
+
+struct VoxelHash {
+  std::size_t operator()(const Voxel& voxel) const {
+    std::uint64_t hash = 0;
+    for (const std::int64_t index : voxel) {
+      // The finalizer of MurmurHash3 spreads neighbouring indices.
+      hash ^= static_cast<std::uint64_t>(index);
+      hash ^= hash >> 33U;
+      hash *= 0xff51afd7ed558ccdULL;
+      hash ^= hash >> 33U;
+    }
+    return static_cast<std::size_t>(hash);
+  }
+};
+
 /// Returns the first point of each voxel, in the order of the points.
 std::vector<Vector3f> downsampled(const std::vector<Vector3f>& points, double voxel) {
-  std::set<std::tuple<std::int64_t, std::int64_t, std::int64_t>> used;
+  std::unordered_set<Voxel, VoxelHash> used;
   std::vector<Vector3f> result;
   for (const Vector3f& point : points) {
     const auto cell = [&](int axis) {
       return static_cast<std::int64_t>(std::floor(static_cast<double>(point[axis]) / voxel));
     };
-    if (used.emplace(cell(0), cell(1), cell(2)).second) result.push_back(point);
+    if (used.insert({cell(0), cell(1), cell(2)}).second) result.push_back(point);
   }
   return result;
 }

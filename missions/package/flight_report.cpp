@@ -87,10 +87,12 @@ std::string flight_text(const SurveyMission& flight, bool is_verbose) {
   if (!flight.failure.empty()) return "  flight    none: " + flight.failure + "\n";
   const flight::Route& route = flight.route;
   const flight::ClearanceBudget& clearance = route.options.clearance;
+  const bool is_passing =
+      std::ranges::any_of(route.capture_points, &flight::CapturePoint::is_passed);
   std::string text =
-      fmt::format("  flight    {}, {} views, {:.1f} m in {:.1f} min, {}", route.vehicle.name,
-                  route.capture_points.size(), route.length, route.duration / 60.0,
-                  support::counted(route.sorties.size(), "sortie"));
+      fmt::format("  flight    {}, {} {}, {:.1f} m in {:.1f} min, {}", route.vehicle.name,
+                  route.capture_points.size(), is_passing ? "waypoints" : "views", route.length,
+                  route.duration / 60.0, support::counted(route.sorties.size(), "sortie"));
   if (is_verbose && route.options.order_is_free && route.order_bound > 0.0) {
     text += fmt::format("; tour at most {:.1f}% longer than the shortest",
                         100.0 * (route.order_length / route.order_bound - 1.0));

@@ -338,10 +338,8 @@ PackageSummary parse_package_summary(const std::string& text, const std::string&
                                      const std::vector<config::KeyOverride>& overrides) {
   try {
     const Json json = parse_summary(text, name);
-    if (json.value("kind", std::string()) == "inspection") {
-      fail(name,
-           "describes an inspection, whose route files skycap plan writes; use the files in this "
-           "folder, or plan the mission again");
+    if (json.value("kind", Json()) == "inspection") {
+      fail(name, "describes an inspection, which has no views to stop at");
     }
     PackageSummary summary;
     summary.mission = mission_from_settings(json.at("settings"), name, overrides);

@@ -30,6 +30,7 @@
 #include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
 #include "geometry/surfaces/mesh.h"
+#include "missions/inspection/flight_comparison.h"
 #include "missions/inspection/flight_file.h"
 #include "sim/models/models.h"
 #include "survey/inspection/inspection_planner.h"
@@ -154,6 +155,15 @@ void print(const FlightEvaluation& evaluation) {
   std::printf("  limits           %s\n", evaluation.keeps_limits() ? "kept" : "exceeded");
 }
 
+/// Prints the row of results pages.
+void print_row(const Arguments& arguments, const std::string& flight,
+               const FlightEvaluation& evaluation) {
+  const std::string structure = arguments.cloud.empty() ? arguments.scene : arguments.cloud;
+  const std::array flights{
+      missions::inspection::ComparedFlight{structure, flight, evaluation, "", processor_seconds()}};
+  std::printf("%s", missions::inspection::comparison_table(flights).c_str());
+}
+
 Vertex make_vertex(const Eigen::Vector3d& position, double yaw, double pitch) {
   Vertex vertex;
   vertex.position = position;
@@ -247,11 +257,14 @@ void run(const Arguments& arguments) {
     options.max_pitch = arguments.options.pitch.max;
     options.threads = arguments.run.threads;
     const StructureCloud cloud = make_structure_cloud(site.points, site.normals);
-    print(evaluate_flight(arguments.pattern.empty()
-                              ? missions::inspection::read_flight_csv(arguments.flight)
-                              : pattern_flight(arguments, cloud),
-                          cloud, options));
+    const bool is_file = arguments.pattern.empty();
+    const FlightEvaluation evaluation =
+        evaluate_flight(is_file ? missions::inspection::read_flight_csv(arguments.flight)
+                                : pattern_flight(arguments, cloud),
+                        cloud, options);
+    print(evaluation);
     std::printf("  processor        %8.1f s\n", processor_seconds());
+    print_row(arguments, is_file ? arguments.flight : arguments.pattern, evaluation);
     return;
   }
   const InspectionPlan plan = plan_inspection(arguments.options, site, arguments.run);
@@ -262,6 +275,7 @@ void run(const Arguments& arguments) {
               plan.attainable[1], plan.attainable[2]);
   print(plan.evaluation);
   std::printf("  processor        %8.1f s\n", processor_seconds());
+  print_row(arguments, "skycap, seed " + std::to_string(arguments.run.seed), plan.evaluation);
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include <nlohmann/json.hpp>
 #include <pugixml.hpp>
 
+#include "flight/export/export.h"
 #include "flight/export/flight_plan.h"
 #include "flight/export/wpml_file.h"
 #include "flight/interpreter/interpret.h"
@@ -291,9 +292,12 @@ TEST_F(InspectionFlightTest, StatesWhyThereAreNoRouteFiles) {
   EXPECT_TRUE(std::filesystem::exists(written.folder / inspection::flight_name));
 }
 
-/// Elements of passed waypoints and their actions, with the values that DJI's WPML documentation
-/// lists (common elements: waypointTurnParam, waypointHeadingParam, actionTrigger,
-/// gimbalEvenlyRotate, startRecord, stopRecord). An empty list stands for numbers.
+/// Elements of passed waypoints and their actions, with the values that DJI documents: page "Common
+/// Elements" of the Cloud API (developer.dji.com, api-reference/dji-wpml/common-element; file
+/// docs/en/60.api-reference/00.dji-wpml/40.common-element.md of dji-sdk/Cloud-API-Doc, and the
+/// Chinese page that lists the Matrice 4 series). An empty list stands for numbers.
+///
+/// stopRecord has payloadLensIndex for the Matrice 30 only, and no useGlobalPayloadLensIndex.
 struct DocumentedElement {
   const char* parent;
   const char* name;
@@ -324,9 +328,7 @@ const std::vector<DocumentedElement>& documented_elements() {
       {"startRecord", "fileSuffix", {"inspection"}},
       {"startRecord", "payloadLensIndex", {"wide", "zoom", "ir", "narrow_band", "visable"}},
       {"startRecord", "useGlobalPayloadLensIndex", {"0", "1"}},
-      {"stopRecord", "payloadPositionIndex", positions},
-      {"stopRecord", "payloadLensIndex", {"wide", "zoom", "ir", "narrow_band", "visable"}},
-      {"stopRecord", "useGlobalPayloadLensIndex", {"0", "1"}}};
+      {"stopRecord", "payloadPositionIndex", positions}};
   return elements;
 }
 
@@ -337,6 +339,54 @@ std::string local_name(const pugi::xml_node& node) {
     return node.parent().child("wpml:actionActuatorFunc").text().get();
   }
   return name.starts_with("wpml:") ? name.substr(5) : name;
+}
+
+// Sections waypointTurnParam, waypointHeadingParam, actionGroup and gimbalEvenlyRotate of the page
+// above, and waypointSpeed of "Waylines.wpml".
+TEST_F(InspectionFlightTest, WritesValuesInDocumentedRanges) {
+  const Written written = write(read("mavic_3e"));
+  const flight::KmzContent content =
+      flight::unpack_kmz(geometry::read_file(written.folder / "mission.kmz"));
+  pugi::xml_document document;
+  ASSERT_TRUE(document.load_string(content.waylines_wpml.c_str()));
+  const std::vector<Vector3d> positions = flight::read_positions(
+      geometry::read_file(written.folder / "mission.kmz"), flight::Format::kmz,
+      read("mavic_3e").flight().site, written.mission.flight->pad);
+  std::vector<double> damping;
+  int group = 0;
+  for (const pugi::xpath_node& match : document.select_nodes("//Placemark")) {
+    const pugi::xml_node mark = match.node();
+    const pugi::xml_node turn = mark.child("wpml:waypointTurnParam");
+    const bool is_passed =
+        std::string(turn.child("wpml:waypointTurnMode").text().get()) == "coordinateTurn";
+    damping.push_back(turn.child("wpml:waypointTurnDampingDist").text().as_double());
+    if (is_passed) {
+      EXPECT_GT(damping.back(), 0.0);
+    }
+    EXPECT_EQ(std::string(mark.child("wpml:useStraightLine").text().get()), "1");
+    EXPECT_GT(mark.child("wpml:waypointSpeed").text().as_double(), 0.0);
+    EXPECT_LE(mark.child("wpml:waypointSpeed").text().as_double(), 15.0);
+    const pugi::xml_node heading = mark.child("wpml:waypointHeadingParam");
+    EXPECT_EQ(std::string(heading.child("wpml:waypointHeadingMode").text().get()),
+              "smoothTransition");
+    EXPECT_LE(std::abs(heading.child("wpml:waypointHeadingAngle").text().as_double()), 180.0);
+    for (const pugi::xml_node actions : mark.children("wpml:actionGroup")) {
+      EXPECT_EQ(actions.child("wpml:actionGroupId").text().as_int(), group++);
+      const int first = actions.child("wpml:actionGroupStartIndex").text().as_int();
+      const int last = actions.child("wpml:actionGroupEndIndex").text().as_int();
+      EXPECT_GE(last, first);
+      const std::string trigger =
+          actions.child("wpml:actionTrigger").child("wpml:actionTriggerType").text().get();
+      const std::string function =
+          actions.child("wpml:action").child("wpml:actionActuatorFunc").text().get();
+      EXPECT_EQ(function == "gimbalEvenlyRotate", trigger == "betweenAdjacentPoints");
+    }
+  }
+  // A leg is longer than the damping distances at its ends.
+  ASSERT_EQ(damping.size(), positions.size());
+  for (std::size_t i = 1; i < positions.size(); ++i) {
+    EXPECT_LT(damping[i - 1] + damping[i], (positions[i] - positions[i - 1]).norm()) << i;
+  }
 }
 
 TEST_F(InspectionFlightTest, WritesOnlyDocumentedElementsAndValues) {

@@ -2,10 +2,12 @@
 #include "missions/inspection/inspection_mission.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <numbers>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -18,6 +20,7 @@
 #include "geometry/io/cloud_io.h"
 #include "geometry/io/file.h"
 #include "geometry/io/output_folder.h"
+#include "geometry/random_numbers.h"
 #include "geometry/surfaces/mesh.h"
 #include "geometry/surfaces/mesh_distance.h"
 #include "missions/config/inspection_rules.h"
@@ -120,7 +123,7 @@ TEST_F(InspectionMissionTest, WritesAFlightThatItsEvaluationConfirms) {
   EXPECT_EQ(json.at("inspection").at("duration_s"), mission.plan.evaluation.duration);
   EXPECT_TRUE(json.at("inspection").at("formats_not_written").contains("plan"));
   EXPECT_THAT(thrown_message([&] { package::read_package(folder.path(), {}); }),
-              HasSubstr("describes an inspection, whose route files skycap plan writes"));
+              HasSubstr("describes an inspection, which has no views to stop at"));
 }
 
 TEST_F(InspectionMissionTest, PlansAroundAPointCloud) {
@@ -149,6 +152,33 @@ flight: {vehicle: mavic_3e, free_space: assumed, position_error: 0.1, clearance:
   }
   // The surface between the points is up to a disc radius nearer than they are.
   EXPECT_GE(nearest, 2.0 + static_cast<double>(mission.plan.cloud.median_radius));
+}
+
+// Twin: the first point of each voxel, with an ordered set.
+TEST_F(InspectionMissionTest, KeepsOnePointPerVoxelOfALargeCloud) {
+  geometry::RandomNumbers random(5);
+  std::vector<Eigen::Vector3f> points;
+  for (int i = 0; i < 40'000; ++i) {
+    const auto number = [&] { return static_cast<float>(random.between(-3.0, 3.0)); };
+    points.push_back({number(), number(), 3.0F});
+    if (i % 3 == 0) points.push_back(points.back());
+  }
+  geometry::CloudColumns columns;
+  columns.positions = points;
+  geometry::write_cloud(folder_.path() / "roof.ply", columns);
+  const inspection::InspectionSpace space(read(R"(
+inspection: {range: 7, cloud: roof.ply, spacing: 0.05}
+flight: {vehicle: mavic_3e, free_space: assumed, position_error: 0.1, clearance: 2}
+)"));
+  std::set<std::array<double, 3>> used;
+  std::vector<Eigen::Vector3f> expected;
+  for (const Eigen::Vector3f& point : points) {
+    const Eigen::Vector3d cell = (point.cast<double>() / 0.05).array().floor();
+    if (used.insert({cell.x(), cell.y(), cell.z()}).second) expected.push_back(point);
+  }
+  const auto kept = space.site().points;
+  EXPECT_TRUE(std::equal(kept.begin(), kept.end(), expected.begin(), expected.end()));
+  EXPECT_LT(expected.size(), points.size());
 }
 
 TEST_F(InspectionMissionTest, DerivesLimitsFromTheVehicle) {

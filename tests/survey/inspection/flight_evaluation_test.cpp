@@ -86,19 +86,19 @@ TEST(EvaluateFlight, LimitsTheIncidence) {
   const auto tilted = [](double angle_deg) {
     const double angle = angle_deg * radians_per_degree;
     std::vector<Vector3f> points;
-    for (double a = -0.1; a <= 0.1; a += 0.02) {
-      for (double b = -0.1; b <= 0.1; b += 0.02) {
+    for (double a = -0.06; a <= 0.06; a += 0.012) {
+      for (double b = -0.06; b <= 0.06; b += 0.012) {
         points.push_back(Vector3d(5.0 + a * std::sin(angle), a * std::cos(angle), b).cast<float>());
       }
     }
     return make_structure_cloud(points);
   };
   EvaluationOptions options;
-  options.cube_resolution = 640;  // pixels must not be wider than the discs
+  options.cube_resolution = 1280;  // pixels must not be wider than the discs
   const auto eye = resting_at(Vector3d::Zero(), 0, 0);
-  EXPECT_EQ(shares(eye, tilted(73.0), options)[2], shares(eye, tilted(73.0), options)[1]);
-  EXPECT_GT(shares(eye, tilted(73.0), options)[1], 0.95);
-  EXPECT_EQ(shares(eye, tilted(77.0), options)[2], 0.0);
+  EXPECT_EQ(shares(eye, tilted(74.0), options)[2], shares(eye, tilted(74.0), options)[1]);
+  EXPECT_GT(shares(eye, tilted(74.0), options)[1], 0.95);
+  EXPECT_EQ(shares(eye, tilted(76.0), options)[2], 0.0);
 }
 
 TEST(EvaluateFlight, CountsViewsEveryHalfSecond) {
