@@ -335,8 +335,8 @@ class Comparison {
       const bool is_first = k == 0 && legs.size() > 1;
       legs[k].is_flown = is_first || legs[k].flown_fraction >= min_flown_fraction;
     }
-    // A flight that leaves a leg early may pass half of it. A flown leg is followed from station to
-    // station; a log may begin and end in the air.
+    // A flight that leaves a leg early may pass half of it. A flown leg is followed from stop to
+    // stop; a log may begin and end in the air.
     for (std::size_t j = 0; j < pieces_.size(); ++j) {
       const bool is_end = j + 1 < pieces_.size() && pieces_[j + 1].leg != pieces_[j].leg;
       const bool is_begin = j > 0 && pieces_[j - 1].leg != pieces_[j].leg;

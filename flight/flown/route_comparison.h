@@ -82,7 +82,7 @@ struct RouteComparison {
   std::vector<CaptureComparison> captures;  ///< One for each planned capture.
   std::vector<TrackState> other_captures;   ///< Captures without a plan, with a known direction.
   std::size_t num_other_captures = 0;       ///< Number of captures without a plan.
-  /// True if the log has no camera events: captures are assumed at each station that was reached.
+  /// True if the log has no camera events: captures are assumed at each stop that was reached.
   bool are_captures_assumed = false;
   double duration = 0.0;  ///< Flown time without the time between flights [s].
   double length = 0.0;    ///< Flown length [m].

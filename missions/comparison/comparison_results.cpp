@@ -106,7 +106,7 @@ Json patch_json(const FlightComparison& comparison) {
                      {"duration_s", file.duration}});
   }
   return {{"views", comparison.missed_views},
-          {"stations", route.capture_points.size()},
+          {"waypoints", route.capture_points.size()},
           {"length_m", route.length},
           {"duration_s", route.duration},
           {"min_clearance_m", number_json(route.min_clearance)},
@@ -115,6 +115,9 @@ Json patch_json(const FlightComparison& comparison) {
           {"files", files},
           {"notes", comparison.patch->files.notes}};
 }
+
+/// Returns 0 instead of a value that would be printed as -0.00.
+double without_sign(double value) { return std::abs(value) < 0.005 ? 0.0 : value; }
 
 std::string position_text(const Eigen::Vector3d& position) {
   return fmt::format("({:.1f}, {:.1f}, {:.1f})", position.x(), position.y(), position.z());
@@ -160,10 +163,10 @@ std::string captures_text(const FlightComparison& comparison) {
   const Eigen::Vector3d& offset = comparison.route.mean_offset;
   text += fmt::format(
       "\n  offset    {:.2f} m on average at the captures: east {:.2f}, north {:.2f}, up {:.2f}\n",
-      offset.norm(), offset.x(), offset.y(), offset.z());
+      offset.norm(), without_sign(offset.x()), without_sign(offset.y()), without_sign(offset.z()));
   if (comparison.route.are_captures_assumed) {
     text +=
-        "  Warning: the log contains no camera event. A capture is assumed at each station that "
+        "  Warning: the log contains no camera event. A capture is assumed at each stop that "
         "was reached.\n";
   }
   return text;

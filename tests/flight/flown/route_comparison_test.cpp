@@ -19,8 +19,8 @@ using testing::HasSubstr;
 
 constexpr double speed = 4.0, rest = 2.0;
 
-/// Stations of a serpentine in front of a facade, from a pad and back to it.
-std::vector<Vector3d> stations() {
+/// Stops of a serpentine in front of a facade, from a pad and back to it.
+std::vector<Vector3d> stops() {
   std::vector<Vector3d> points{{0, -10, 0}};
   for (int row = 0; row < 3; ++row) {
     for (int i = 0; i < 5; ++i) {
@@ -65,9 +65,9 @@ FlownTrack make_track(const std::vector<FlownState>& flight, const Vector3d& off
 }
 
 TEST(RouteComparison, FindsNoErrorInExactFlights) {
-  const PlannedFlight plan = make_plan(stations());
-  const RouteComparison found = compare_route(
-      plan, make_track(fly_polyline(stations(), all_captures()), Vector3d::Zero()), {});
+  const PlannedFlight plan = make_plan(stops());
+  const RouteComparison found =
+      compare_route(plan, make_track(fly_polyline(stops(), all_captures()), Vector3d::Zero()), {});
   for (std::size_t i = 0; i < plan.legs.size(); ++i) {
     EXPECT_TRUE(found.legs[i].is_flown) << i;
     EXPECT_GT(found.legs[i].flown_fraction, 0.99) << i;
@@ -84,15 +84,15 @@ TEST(RouteComparison, FindsNoErrorInExactFlights) {
   EXPECT_EQ(found.num_other_captures, 0);
 }
 
-/// 0.5 m off, three captures missed, and the two legs of one station left out.
+/// 0.5 m off, three captures missed, and the two legs of one stop left out.
 TEST(RouteComparison, FindsKnownErrors) {
-  const PlannedFlight plan = make_plan(stations());
-  std::vector<Vector3d> points = stations();
-  // Station 5 ends a row: without it, the vehicle flies from station 4 directly to station 6.
+  const PlannedFlight plan = make_plan(stops());
+  std::vector<Vector3d> points = stops();
+  // Stop 5 ends a row: without it, the vehicle flies from stop 4 directly to stop 6.
   points.erase(points.begin() + 5);
   std::vector<std::size_t> captures = all_captures();
-  captures.pop_back();                                                       // one station fewer
-  std::erase_if(captures, [](std::size_t i) { return i == 8 || i == 12; });  // stations 9 and 13
+  captures.pop_back();                                                       // one stop fewer
+  std::erase_if(captures, [](std::size_t i) { return i == 8 || i == 12; });  // stops 9 and 13
   const Vector3d offset(0.0, 0.5, 0.0);
   const RouteComparison found = compare_route(
       plan, make_track(fly_polyline(points, captures), offset), {.max_deviation = 2.0});
@@ -117,9 +117,9 @@ TEST(RouteComparison, FindsKnownErrors) {
 }
 
 TEST(RouteComparison, FindsTheEndOfAnAbortedFlight) {
-  const PlannedFlight plan = make_plan(stations());
-  std::vector<Vector3d> points = stations();
-  points.erase(points.begin() + 9, points.end() - 1);  // returns after station 8
+  const PlannedFlight plan = make_plan(stops());
+  std::vector<Vector3d> points = stops();
+  points.erase(points.begin() + 9, points.end() - 1);  // returns after stop 8
   const RouteComparison found = compare_route(
       plan, make_track(fly_polyline(points, {1, 2, 3, 4, 5, 6, 7, 8}), Vector3d::Zero()), {});
   for (std::size_t i = 0; i < plan.captures.size(); ++i) {
@@ -129,9 +129,9 @@ TEST(RouteComparison, FindsTheEndOfAnAbortedFlight) {
 }
 
 TEST(RouteComparison, AcceptsLogsThatBeginInTheAir) {
-  const std::vector<Vector3d> points = stations();
+  const std::vector<Vector3d> points = stops();
   const PlannedFlight plan = make_plan(points);
-  // The log begins 3 m before the first station, which is 14 m from the take-off point.
+  // The log begins 3 m before the first stop, which is 14 m from the take-off point.
   std::vector<Vector3d> flown = points;
   flown.front() = points[1] + 3.0 * (points[0] - points[1]).normalized();
   const RouteComparison found =
@@ -156,7 +156,7 @@ TEST(RouteComparison, DistinguishesLegsOverTheSamePath) {
   EXPECT_TRUE(part.legs[2].is_flown);
 }
 
-/// Two captures at one station are distinguished by their direction.
+/// Two captures at one stop are distinguished by their direction.
 TEST(RouteComparison, MatchesCapturesByDirection) {
   PlannedFlight plan = make_plan({{0, 0, 10}, {20, 0, 10}, {40, 0, 10}});
   plan.captures = {{{20, 0, 10}, 90.0, 0.0, "east"}, {{20, 0, 10}, 0.0, -20.0, "north"}};
@@ -171,8 +171,8 @@ TEST(RouteComparison, MatchesCapturesByDirection) {
 }
 
 TEST(RouteComparison, AssumesCapturesWithoutEvents) {
-  const PlannedFlight plan = make_plan(stations());
-  std::vector<Vector3d> points = stations();
+  const PlannedFlight plan = make_plan(stops());
+  std::vector<Vector3d> points = stops();
   points.erase(points.begin() + 5);
   FlownTrack track = make_track(fly_polyline(points, {}), Vector3d::Zero());
   track.has_captures = false;
@@ -184,8 +184,8 @@ TEST(RouteComparison, AssumesCapturesWithoutEvents) {
 }
 
 TEST(RouteComparison, RejectsInvalidDeviations) {
-  const PlannedFlight plan = make_plan(stations());
-  const FlownTrack track = make_track(fly_polyline(stations(), {}), Vector3d::Zero());
+  const PlannedFlight plan = make_plan(stops());
+  const FlownTrack track = make_track(fly_polyline(stops(), {}), Vector3d::Zero());
   EXPECT_THAT(
       testing_support::thrown_message([&] { compare_route(plan, track, {.max_deviation = 0.0}); }),
       HasSubstr("must be positive"));

@@ -162,7 +162,7 @@ TEST_F(FlightComparisonTest, FindsKnownErrorsAndClosesThem) {
     EXPECT_GT(closed, 0.95 * (whole - truth));
 
     // The patch mission is verified against the true scene.
-    EXPECT_EQ(json["patch"]["stations"], 3);
+    EXPECT_EQ(json["patch"]["waypoints"], 3);
     EXPECT_GE(json["patch"]["min_clearance_m"].get<double>(), 2.0);
     const tests::ProgramRun check =
         tests::run_skycap({"check", folder_ / "teapot.yaml", "--route",
