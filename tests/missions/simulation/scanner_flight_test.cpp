@@ -35,7 +35,8 @@ TEST(ScannerFlight, ReachesOnlyViewsWithFreeReturnClimb) {
       "sensor: {lidar: ouster_os1_128}\n"
       "planner: {density: 100, resolution_radius: 0.5, view_distance: 20}\n"
       "evaluation: {coverage_distance: 0.1}\n"
-      "flight: {vehicle: m350_rtk, unknown_box: {min: [-15, -15, 0], max: [15, 15, 30]}}\n",
+      "flight: {vehicle: m350_rtk, cruise_speed: 4, unknown_box: {min: [-15, -15, 0], max: [15, "
+      "15, 30]}}\n",
       "m.yaml");
   const geometry::View first = geometry::look_at({-20, 0, 10}, {0, 0, 10});
   const geometry::View inside = geometry::look_at({0, 0, 10}, {0, 10, 10});

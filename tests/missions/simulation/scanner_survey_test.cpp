@@ -23,7 +23,7 @@ config::MissionSetup mission_by(const std::string& lidar) {
           "}\n"
           "planner: {density: 4, resolution_radius: 1, spacing: 0.2, view_distance: 14,\n"
           "          scene_box: {min: [-11, -9, 0.3], max: [11, 9, 11]}}\n"
-          "flight: {vehicle: m350_rtk, takeoff: [-60, 0, 0], cruise_speed: 4,\n"
+          "flight: {vehicle: m350_rtk, takeoff: [-80, 0, 0], cruise_speed: 5,\n"
           "         unknown_box: {min: [-11, -9, 0], max: [11, 9, 11]}}\n"
           "evaluation: {coverage_distance: 0.4, samples: 3000, visible_directions: 30,\n"
           "             attainable_views: 0}\n"

@@ -81,7 +81,9 @@ TEST_F(PhotosOfAWall, DoNotConnectAtGrazingIncidence) {
 TEST(TransitionTilt, AgreesWithSingularValues) {
   geometry::RandomNumbers random(3, 1);
   const auto observation = [&] {
-    Vector3d ray(random.uniform() - 0.5, random.uniform() - 0.5, 0.2 + random.uniform());
+    Vector3d ray;
+    for (double& part : ray) part = random.uniform() - 0.5;
+    ray.z() += 0.7;
     ray.normalize();
     return Observation{ray.cast<float>(), 1.0F, static_cast<float>(ray.z()), 0};
   };
