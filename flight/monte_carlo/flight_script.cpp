@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <vector>
 
 #include "flight/autopilot/mission_mode.h"
 #include "geometry/angle.h"
@@ -26,6 +27,12 @@ class ScriptWriter {
 
   FlightScript write() {
     for (std::size_t i = 0; i < route_.segments.size(); ++i) {
+      const std::size_t last = last_without_stop(i);
+      if (last > i) {
+        append_continuous(i, last);
+        i = last;
+        continue;
+      }
       const InterpretedSegment& segment = route_.segments[i];
       ScriptedLeg leg = make_leg(i, script_.empty() ? segment.start.to : script_.back().to);
       leg.is_over_pad = segment.is_over_pad;
@@ -49,6 +56,97 @@ class ScriptWriter {
           std::max(leg.moving, motion_.takeoff_time((segment.to - from).norm()) - settling);
     }
     return leg;
+  }
+
+  /// Returns the index of the leg at whose end the vehicle stops next.
+  std::size_t last_without_stop(std::size_t i) const {
+    const auto& segments = route_.segments;
+    const auto is_passed = [&](std::size_t end) {
+      return end + 1 < segments.size() && segments[end].hold == 0.0 &&
+             segments[end + 1].start.length() > 0.0 && !segments[end].is_over_pad &&
+             !segments[end + 1].is_over_pad;
+    };
+    while (is_passed(i)) ++i;
+    return i;
+  }
+
+  /// Appends the legs from `first` to `last`, whose inner corners are passed.
+  void append_continuous(std::size_t first, std::size_t last) {
+    const Vector3d begin = script_.empty() ? route_.segments[first].start.to : script_.back().to;
+    std::vector<ScriptedLeg> pieces;
+    Vector3d at = begin, corner = begin;  // End of the last piece, and start of the leg's line.
+    for (std::size_t i = first; i <= last; ++i) {
+      const InterpretedSegment& segment = route_.segments[i];
+      const Vector3d leg = segment.to - corner;
+      corner = segment.to;
+      if (leg.norm() == 0.0) continue;
+      Vector3d turn_begin = segment.to, turn_end = segment.to;
+      if (i < last) {
+        constexpr double max_share = 0.5;
+        const InterpretedSegment& next = route_.segments[i + 1];
+        const Vector3d out = next.to - segment.to;
+        const double before = std::min(next.start.length(), max_share * leg.norm());
+        const double after = std::min(before, max_share * out.norm());
+        turn_begin -= before * leg.normalized();
+        if (out.norm() > 0.0) turn_end += after * out.normalized();
+      }
+      append_pieces(at, turn_begin, segment, pieces);
+      constexpr int parts = 8;
+      Vector3d from = turn_begin;
+      for (int k = 1; k <= parts && i < last; ++k) {
+        const double s = static_cast<double>(k) / parts;
+        const Vector3d to = (1.0 - s) * (1.0 - s) * turn_begin + 2.0 * s * (1.0 - s) * segment.to +
+                            s * s * turn_end;
+        append_pieces(from, to, segment, pieces);
+        from = to;
+      }
+      at = i < last ? turn_end : turn_begin;
+    }
+    if (pieces.empty()) return;
+    set_speeds(pieces);
+    pieces.back().wait = motion_.vehicle().mode.settle_time + route_.segments[last].hold +
+                         turning(route_.segments[last], 0.0);
+    script_.insert(script_.end(), pieces.begin(), pieces.end());
+  }
+
+  /// Appends a straight line as pieces of equal length, with the speed of `segment`.
+  void append_pieces(const Vector3d& from, const Vector3d& to, const InterpretedSegment& segment,
+                     std::vector<ScriptedLeg>& pieces) {
+    constexpr double max_length = 0.25;
+    const double length = (to - from).norm();
+    const int count = static_cast<int>(std::ceil(length / max_length));
+    for (int i = 0; i < count; ++i) {
+      ScriptedLeg piece =
+          scripted_leg(motion_at(segment.speed), from + i * (to - from) / count,
+                       i + 1 < count ? Vector3d(from + (i + 1) * (to - from) / count) : to);
+      piece.is_piece = true;
+      piece.items = {segment.from_item, segment.to_item};
+      pieces.push_back(std::move(piece));
+    }
+  }
+
+  /// Sets the speeds at the ends of pieces, from rest to rest, and their times.
+  static void set_speeds(std::vector<ScriptedLeg>& pieces) {
+    const auto length = [](const ScriptedLeg& piece) { return (piece.to - piece.from).norm(); };
+    std::vector<double> speeds(pieces.size() + 1, 0.0);
+    for (std::size_t i = 1; i < pieces.size(); ++i) {
+      const double reached = std::sqrt(speeds[i - 1] * speeds[i - 1] +
+                                       2.0 * pieces[i - 1].acceleration * length(pieces[i - 1]));
+      speeds[i] = std::min({pieces[i - 1].speed, pieces[i].speed, reached});
+    }
+    for (std::size_t i = pieces.size(); i-- > 0;) {
+      ScriptedLeg& piece = pieces[i];
+      const double braked =
+          std::sqrt(speeds[i + 1] * speeds[i + 1] + 2.0 * piece.acceleration * length(piece));
+      speeds[i] = std::min(speeds[i], braked);
+      piece.begin_speed = speeds[i];
+      piece.end_speed = speeds[i + 1];
+    }
+    for (ScriptedLeg& piece : pieces) {
+      piece.moving = pieces.size() == 1
+                         ? piece.moving
+                         : 2.0 * length(piece) / (piece.begin_speed + piece.end_speed);
+    }
   }
 
   /// Returns true if a piece is vertically downwards and is the last one, or continues into the
@@ -98,6 +196,12 @@ class ScriptWriter {
 /// shape that of seven phases.
 MotionState state_on(const ScriptedLeg& leg, double jerk, double time) {
   const double distance = (leg.to - leg.from).norm();
+  if (leg.is_piece) {
+    if (time >= leg.moving) return {distance, leg.end_speed, 0.0};
+    const double acceleration = (leg.end_speed - leg.begin_speed) / leg.moving;
+    return {time * (leg.begin_speed + 0.5 * acceleration * time),
+            leg.begin_speed + acceleration * time, acceleration};
+  }
   const double own = rest_to_rest_time(distance, leg.speed, leg.acceleration, jerk);
   if (time >= leg.moving || own == 0.0) return {distance, 0.0, 0.0};
   const double pace = own / leg.moving;
@@ -139,7 +243,7 @@ SetPoint braking_point(const ScriptedLeg& leg, double jerk, double time, double 
   const double length = (leg.to - leg.from).norm();
   MotionState state{begin.distance + t * (begin.speed - 0.5 * leg.acceleration * t),
                     begin.speed - leg.acceleration * t, 0.0};
-  if (state.distance >= length) state = {length, 0.0, 0.0};
+  if (state.distance >= length && !leg.is_piece) state = {length, 0.0, 0.0};
   return at(leg, state);
 }
 

@@ -1,6 +1,8 @@
 /// Time-stamped flight commands: straight legs with waits in between.
 ///
 /// The motion along a leg is that of rest_to_rest_state(), in the time of the autopilot's leg law.
+/// Legs between waypoints that are passed without a stop are divided into short pieces of constant
+/// acceleration, with a parabola at each corner.
 #pragma once
 
 #include <array>
@@ -15,7 +17,7 @@
 
 namespace skycap::flight {
 
-/// Straight leg from rest to rest.
+/// Straight leg from rest to rest, or a piece of a continuous flight.
 struct ScriptedLeg {
   Eigen::Vector3d from = Eigen::Vector3d::Zero(), to = Eigen::Vector3d::Zero();
   double moving = 0.0;                 ///< Time in motion [s].
@@ -24,6 +26,8 @@ struct ScriptedLeg {
   double acceleration = 0.0;           ///< Acceleration limit [m/s^2].
   bool is_over_pad = false;            ///< True above the pad, where the ground is not an obstacle.
   std::array<std::string, 2> items{};  ///< Mission items at the start and end of the leg.
+  bool is_piece = false;               ///< Piece of a continuous flight, without rest at its ends.
+  double begin_speed = 0.0, end_speed = 0.0;  ///< Of a piece [m/s].
 
   double duration() const { return moving + wait; }
 };
@@ -37,7 +41,8 @@ double duration(const FlightScript& script);
 SetPoint set_point(const ScriptedLeg& leg, double jerk, double time);
 
 /// Returns the setpoint `braking` [s] after a leg was aborted at `time` [s]. The vehicle brakes
-/// along the leg with its acceleration, at most to its end.
+/// along the leg with its acceleration, at most to its end. On a piece of a continuous flight it
+/// brakes straight on, also beyond the end of the piece.
 SetPoint braking_point(const ScriptedLeg& leg, double jerk, double time, double braking);
 
 /// Returns the braking time after an abort at `time` [s].
@@ -52,7 +57,8 @@ ScriptedLeg scripted_leg(const Motion& motion, const Eigen::Vector3d& from,
 ScriptedLeg landing_leg(const Motion& motion, const Eigen::Vector3d& from, double end, double foot);
 
 /// Returns the flight of a route file with the vehicle of `motion`. Legs with several possible
-/// start positions use the last one.
+/// start positions follow a corner that is passed: it is rounded by a parabola from the earliest
+/// departure, or from the middle of a leg if that is later.
 FlightScript make_flight_script(const InterpretedRoute& route, const Motion& motion);
 
 }  // namespace skycap::flight

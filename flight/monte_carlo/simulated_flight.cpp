@@ -61,7 +61,11 @@ class Simulation {
 
   /// Flies a leg. Returns true if the vehicle was recalled and has come to rest.
   bool fly_leg(const ScriptedLeg& leg) {
-    const double begin = time_, end = begin + leg.duration();
+    // Pieces follow each other between the steps of the simulation.
+    if (!leg.is_piece || !is_on_piece_) begin_ = time_;
+    is_on_piece_ = leg.is_piece && leg.end_speed > 0.0;
+    const double begin = begin_, end = begin + leg.duration();
+    begin_ = end;
     const double return_time = is_returning_ ? end : std::min(end, draw_.return_time.value_or(end));
     while (time_ < return_time) advance(leg, set_point(leg, jerk(), time_ - begin));
     if (is_returning_ || return_time >= end) return false;
@@ -88,8 +92,12 @@ class Simulation {
     time_ += step;
     if (track_) track_->push_back(vehicle_.position());
     const Segment line{leg.from, leg.to};
-    if (line.length() > 0.0) {  // The vehicle comes to rest on the line of the leg.
-      const double off_line = std::sqrt(nearest(line, vehicle_.position()).squared_distance);
+    if (line.length() > 0.0) {
+      // The vehicle comes to rest on a leg. It follows a piece from behind.
+      const Vector3d direction = (leg.to - leg.from) / line.length();
+      const double off_line = leg.is_piece
+                                  ? direction.cross(vehicle_.position() - leg.from).norm()
+                                  : std::sqrt(nearest(line, vehicle_.position()).squared_distance);
       result_.off_line = std::max(result_.off_line, off_line);
     }
     for (CriterionPass& pass : judged_passes_) {
@@ -111,6 +119,8 @@ class Simulation {
   SimulatedFlight result_;
   std::optional<std::vector<Vector3d>> track_;  ///< Set if the track is requested.
   double time_ = 0.0;
+  double begin_ = 0.0;        ///< Of the leg [s].
+  bool is_on_piece_ = false;  ///< The next piece continues without rest.
   Vector3d air_ = Vector3d::Zero();
   Vector3d position_ = Vector3d::Zero();  ///< Position at rest after a recall.
   bool is_returning_ = false;

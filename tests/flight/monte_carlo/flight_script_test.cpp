@@ -1,6 +1,8 @@
 #include "flight/monte_carlo/flight_script.h"
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -120,6 +122,67 @@ TEST(FlightScript, UsesSpeedOfFile) {
   }
   EXPECT_GE(legs, 5U) << "to four stations and back";
   EXPECT_GT(duration(script), 1.2 * flight_time(plan));
+}
+
+/// Square of 10 m at 2 m/s whose inner corners may be cut `turn` m before them.
+InterpretedRoute square(double turn) {
+  const std::vector<Vector3d> corners{{0, 0, 9}, {10, 0, 9}, {10, 10, 9}, {0, 10, 9}, {0, 0, 9}};
+  InterpretedRoute route;
+  for (std::size_t i = 1; i < corners.size(); ++i) {
+    InterpretedSegment segment;
+    const Vector3d before =
+        i > 1 ? Vector3d((corners[i - 2] - corners[i - 1]).normalized()) : Vector3d::Zero();
+    segment.start = {corners[i - 1] + turn * before, corners[i - 1]};
+    segment.to = corners[i];
+    segment.speed = 2.0;
+    route.segments.push_back(segment);
+  }
+  return route;
+}
+
+TEST(FlightScript, PassesCornersWithoutAStop) {
+  const FlightPlan plan = sample_plan(vehicle_profile("generic"));
+  const Motion motion(plan.vehicle, plan.conditions);
+  const double jerk = plan.vehicle.mode.jerk;
+  const FlightScript script = make_flight_script(square(1.0), motion);
+  double length = 0.0, distance_from_corner = 1e9;
+  for (std::size_t i = 0; i < script.size(); ++i) {
+    const ScriptedLeg& leg = script[i];
+    ASSERT_TRUE(leg.is_piece);
+    if (i > 0) {
+      EXPECT_EQ(leg.from, script[i - 1].to);
+      EXPECT_EQ(leg.begin_speed, script[i - 1].end_speed);
+      EXPECT_GT(leg.begin_speed, 0.0) << "no stop on the way";
+    }
+    EXPECT_LE(leg.end_speed, 2.0 + 1e-9);
+    EXPECT_LT((set_point(leg, jerk, 0.0).position - leg.from).norm(), 1e-9);
+    EXPECT_LT((set_point(leg, jerk, leg.moving).position - leg.to).norm(), 1e-9);
+    length += (leg.to - leg.from).norm();
+    distance_from_corner = std::min(distance_from_corner, (leg.to - Vector3d(10, 10, 9)).norm());
+    // An abort brakes straight on.
+    const double braking = braking_time(leg, jerk, 0.5 * leg.moving);
+    const SetPoint rest = braking_point(leg, jerk, 0.5 * leg.moving, braking);
+    EXPECT_LT(rest.velocity.norm(), 1e-9);
+    EXPECT_NEAR((leg.to - leg.from).normalized().cross(rest.position - leg.from).norm(), 0, 1e-9);
+  }
+  EXPECT_EQ(script.front().begin_speed, 0.0);
+  EXPECT_EQ(script.back().end_speed, 0.0);
+  // A parabola between points 1 m before and after a corner of 90 degrees passes it at half of the
+  // distance of their chord, sqrt(2) / 4 m, and is 1.6232 m long (its closed form).
+  EXPECT_NEAR(distance_from_corner, std::sqrt(2.0) / 4.0, 1e-6);
+  EXPECT_NEAR(length, 40.0 - 3.0 * (2.0 - 1.6232), 0.01);
+  const double at_full_speed = length / 2.0;
+  EXPECT_GT(duration(script), at_full_speed);
+  EXPECT_LT(duration(script), at_full_speed + 2.0 / plan.vehicle.mode.acceleration +
+                                  plan.vehicle.mode.settle_time + 0.1);
+}
+
+TEST(FlightScript, StopsAtCornersThatAreNotPassed) {
+  const FlightPlan plan = sample_plan(vehicle_profile("generic"));
+  const FlightScript script =
+      make_flight_script(square(0.0), Motion(plan.vehicle, plan.conditions));
+  ASSERT_EQ(script.size(), 4U);
+  for (const ScriptedLeg& leg : script) EXPECT_FALSE(leg.is_piece);
 }
 
 }  // namespace
