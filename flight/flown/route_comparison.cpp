@@ -17,7 +17,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double degree = geometry::radians_per_degree;
 /// Length of the pieces of a plan [m], and the maximum number of table entries of an alignment.
 constexpr double piece_length = 2.0;
 constexpr std::size_t max_entries = 40'000'000;
@@ -182,7 +181,8 @@ double find_rest_end(const std::vector<TrackState>& states, double time) {
 }
 
 Vector3d compute_direction_of(double yaw_deg, double pitch_deg) {
-  return compute_direction({degree * yaw_deg, degree * pitch_deg});
+  return compute_direction(
+      {geometry::radians_per_degree * yaw_deg, geometry::radians_per_degree * pitch_deg});
 }
 
 /// Completes the camera's direction: by the heading of the vehicle, then by the plan.

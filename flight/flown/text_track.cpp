@@ -22,9 +22,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double metres_per_foot = 0.3048;
-constexpr double degree = geometry::radians_per_degree;
 
-[[noreturn]] void fail(std::size_t line, const std::string& what) {
+[[noreturn]] void fail_line(std::size_t line, const std::string& what) {
   throw Error(ErrorKind::bad_file, "line " + std::to_string(line) + " " + what);
 }
 
@@ -50,7 +49,7 @@ struct ColumnNames {
   std::vector<std::string_view> names;
 };
 
-const std::vector<ColumnNames>& column_names() {
+const std::vector<ColumnNames>& track_columns() {
   static const std::vector<ColumnNames> all = {
       {Column::time, {"time", "flytime", "osdflytime", "timestamp", "elapsedtime", "offsettime"}},
       {Column::latitude, {"latitude", "lat", "osdlatitude", "gpslat", "gpslatitude"}},
@@ -115,9 +114,9 @@ double compute_unit(const std::string& unit) {
   return 1.0;
 }
 
-Table find_columns(const std::vector<std::string>& header) {
+Table find_track_columns(const std::vector<std::string>& header) {
   Table table;
-  for (const ColumnNames& wanted : column_names()) {
+  for (const ColumnNames& wanted : track_columns()) {
     std::optional<TableColumn>& found = table[static_cast<std::size_t>(wanted.column)];
     for (const std::string_view name : wanted.names) {
       for (std::size_t i = 0; i < header.size() && !found; ++i) {
@@ -181,7 +180,7 @@ class TableRows {
     const auto value = to_number(text);
     if (value) return place->unit * *value;
     if (which == Column::latitude || which == Column::longitude) {
-      fail(line, "has \"" + text + "\" as a coordinate; it must be a number in degrees");
+      fail_line(line, "has \"" + text + "\" as a coordinate; it must be a number in degrees");
     }
     return unspecified;
   }
@@ -276,7 +275,7 @@ FlownLog read_csv_track(std::string_view text) {
       if (line.find(',') == std::string_view::npos) {
         separator = line.find(';') != std::string_view::npos ? ';' : '\t';
       }
-      table = find_columns(split_row(line, separator));
+      table = find_track_columns(split_row(line, separator));
       rows.emplace(*table);
       continue;
     }
@@ -307,7 +306,7 @@ FlownLog read_mrk_track(std::string_view text) {
         builder.warn("the last line is incomplete");
         break;
       }
-      fail(number, "must contain a time and a position (Lat, Lon, Ellh)");
+      fail_line(number, "must contain a time and a position (Lat, Lon, Ellh)");
     }
     const Vector3d location(*latitude, *longitude, *height);
     builder.add_position(*time, location, unspecified);
@@ -368,8 +367,8 @@ FlownLog read_tum_track(const std::string& text) {
   builder.log().is_local = true;
   for (const TimedPose& pose : read_tum(text)) {
     const Vector3d axis = pose.world_from_camera.linear().col(2);
-    const double yaw = std::atan2(axis.x(), axis.y()) / degree;
-    const double pitch = std::asin(std::clamp(axis.z(), -1.0, 1.0)) / degree;
+    const double yaw = std::atan2(axis.x(), axis.y()) / geometry::radians_per_degree;
+    const double pitch = std::asin(std::clamp(axis.z(), -1.0, 1.0)) / geometry::radians_per_degree;
     builder.set_yaw(pose.time, yaw);
     builder.set_camera(pose.time, yaw, pitch);
     builder.add_position(pose.time, pose.world_from_camera.translation(), unspecified);
@@ -382,9 +381,9 @@ FlownLog read_trajectory_track(const std::string& text) {
   builder.log().is_local = true;
   builder.log().has_captures = true;
   for (const TimedState& state : read_trajectory_csv(text)) {
-    const double yaw = state.yaw / degree;
+    const double yaw = state.yaw / geometry::radians_per_degree;
     builder.set_yaw(state.time, yaw);
-    builder.set_camera(state.time, yaw, state.pitch / degree);
+    builder.set_camera(state.time, yaw, state.pitch / geometry::radians_per_degree);
     builder.add_position(state.time, state.position, unspecified);
     if (state.is_capture) builder.add_capture(state.time, state.position, unspecified);
   }

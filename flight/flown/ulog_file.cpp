@@ -22,7 +22,7 @@ constexpr std::size_t max_elements = 65535;
 static_assert(std::endian::native == std::endian::little);
 
 template <typename T>
-T stored(const char* bytes) {
+T number_at(const char* bytes) {
   T value;
   std::memcpy(&value, bytes, sizeof value);
   return value;
@@ -38,16 +38,16 @@ std::size_t type_size(std::string_view type) {
 }
 
 double number_at(const char* bytes, std::string_view type) {
-  if (type == "float") return stored<float>(bytes);
-  if (type == "double") return stored<double>(bytes);
-  if (type == "int8_t") return stored<std::int8_t>(bytes);
-  if (type == "int16_t") return stored<std::int16_t>(bytes);
-  if (type == "uint16_t") return stored<std::uint16_t>(bytes);
-  if (type == "int32_t") return stored<std::int32_t>(bytes);
-  if (type == "uint32_t") return stored<std::uint32_t>(bytes);
-  if (type == "int64_t") return static_cast<double>(stored<std::int64_t>(bytes));
-  if (type == "uint64_t") return static_cast<double>(stored<std::uint64_t>(bytes));
-  return stored<std::uint8_t>(bytes);
+  if (type == "float") return number_at<float>(bytes);
+  if (type == "double") return number_at<double>(bytes);
+  if (type == "int8_t") return number_at<std::int8_t>(bytes);
+  if (type == "int16_t") return number_at<std::int16_t>(bytes);
+  if (type == "uint16_t") return number_at<std::uint16_t>(bytes);
+  if (type == "int32_t") return number_at<std::int32_t>(bytes);
+  if (type == "uint32_t") return number_at<std::uint32_t>(bytes);
+  if (type == "int64_t") return static_cast<double>(number_at<std::int64_t>(bytes));
+  if (type == "uint64_t") return static_cast<double>(number_at<std::uint64_t>(bytes));
+  return number_at<std::uint8_t>(bytes);
 }
 
 /// Removes the text before `separator` from `rest` and returns it.
@@ -122,7 +122,7 @@ void UlogParser::read_flags(std::string_view body) {
   if (body.size() < offsets + 8 * num_offsets) return;
   const bool has_appended = (static_cast<unsigned char>(body[incompatible]) & 1U) != 0;
   for (std::size_t i = 0; has_appended && i < num_offsets; ++i) {
-    const auto offset = stored<std::uint64_t>(body.data() + offsets + 8 * i);
+    const auto offset = number_at<std::uint64_t>(body.data() + offsets + 8 * i);
     if (offset > 0) appended_.push_back(offset);
   }
 }
@@ -132,7 +132,7 @@ void UlogParser::subscribe(std::string_view body) {
   Subscription subscription{std::string(body.substr(3)), static_cast<unsigned char>(body[0]), {}};
   // The fields before one of an unknown type keep their offsets.
   add_fields(subscription.topic, "", 0, 0, subscription.fields);
-  subscriptions_[stored<std::uint16_t>(body.data() + 1)] = std::move(subscription);
+  subscriptions_[number_at<std::uint16_t>(body.data() + 1)] = std::move(subscription);
 }
 
 void UlogParser::read_message(char type, std::string_view body) {
@@ -146,12 +146,12 @@ void UlogParser::read_message(char type, std::string_view body) {
     case 'O':
       if (body.size() >= 2) {
         ++dropouts_;
-        dropped_ += 1e-3 * stored<std::uint16_t>(body.data());
+        dropped_ += 1e-3 * number_at<std::uint16_t>(body.data());
       }
       return;
     case 'D': {
       if (body.size() < 2) return;
-      const auto found = subscriptions_.find(stored<std::uint16_t>(body.data()));
+      const auto found = subscriptions_.find(number_at<std::uint16_t>(body.data()));
       if (found == subscriptions_.end()) return;
       const Subscription& topic = found->second;
       return receive_({topic.topic, topic.instance, topic.fields, body.substr(2)});
@@ -187,7 +187,7 @@ std::size_t UlogParser::parse(std::string_view bytes, bool is_last) {
       is_truncated_ = is_last;
       break;
     }
-    const std::size_t size = stored<std::uint16_t>(bytes.data() + i);
+    const std::size_t size = number_at<std::uint16_t>(bytes.data() + i);
     const char type = bytes[i + 2];
     const std::size_t end = i + message_header + size;
     // Data appended after a crash may begin inside the last message before it.

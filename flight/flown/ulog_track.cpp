@@ -17,19 +17,18 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double degree = geometry::radians_per_degree;
-
 /// Returns the heading of the x axis, clockwise from north [deg], of a rotation (w, x, y, z) from
 /// forward-right-down axes to north-east-down axes.
 double yaw_deg(const std::array<double, 4>& q) {
   const auto [w, x, y, z] = q;
-  return std::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)) / degree;
+  return std::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)) /
+         geometry::radians_per_degree;
 }
 
 /// Returns the pitch of the x axis above the horizon [deg].
 double pitch_deg(const std::array<double, 4>& q) {
   const auto [w, x, y, z] = q;
-  return std::asin(std::clamp(2.0 * (w * y - z * x), -1.0, 1.0)) / degree;
+  return std::asin(std::clamp(2.0 * (w * y - z * x), -1.0, 1.0)) / geometry::radians_per_degree;
 }
 
 /// Collects the track of a ULog.
@@ -177,7 +176,7 @@ class UlogTrack {
   // Roll, pitch and yaw [rad]; the frame of the yaw depends on the mount.
   void set_mount(const UlogMessage& message) {
     const auto pitch = message.number("attitude_euler_angle", 1);
-    if (pitch) set_camera(message, unspecified, *pitch / degree);
+    if (pitch) set_camera(message, unspecified, *pitch / geometry::radians_per_degree);
   }
 
   void add_capture(const UlogMessage& message) {
