@@ -173,8 +173,8 @@ void find_missed(const package::PackagedSurvey& survey, FlightComparison& compar
   comparison.missed_views.erase(repeated.begin(), repeated.end());
 }
 
-/// Returns the capture points of some views. The path to each contains the paths to the views before it
-/// that are left out.
+/// Returns the capture points of some views. The path to each contains the paths to the views
+/// before it that are left out.
 std::vector<flight::CapturePoint> make_patch_points(const package::PackagedSurvey& survey,
                                                     const std::vector<std::size_t>& views) {
   std::vector<flight::CapturePoint> all =
