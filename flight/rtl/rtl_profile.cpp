@@ -34,6 +34,12 @@ constexpr AutopilotTraits autopilot_traits(AutopilotType autopilot) {
   return {.level_as_it_is = 50.0 + dji_tolerance, .lands_at_once = dji_lands_at_once};
 }
 
+/// Returns the distance by which braking extends DJI's switching distances beyond dji_tolerance
+/// [m].
+double dji_extension(double braking) {
+  return std::max(0.0, braking + dji_position_error - dji_tolerance);
+}
+
 /// Returns the maximum deviations of the law's autopilots.
 AutopilotTraits autopilot_traits(const RtlProfile& rtl_profile) {
   AutopilotTraits all;
@@ -76,6 +82,10 @@ std::vector<Vector3d> landings_near(const RtlProfile& rtl_profile, const Vector3
 
 }  // namespace
 
+double dji_climb_distance(double braking) {
+  return autopilot_traits(AutopilotType::dji).level_as_it_is + dji_extension(braking);
+}
+
 const char* to_string(ReturnPart part) {
   switch (part) {
     case ReturnPart::climb:
@@ -104,8 +114,8 @@ std::vector<ReturnSegment> return_segments(const RtlProfile& rtl_profile, const 
   for (const Vector3d& landing : landings_near(rtl_profile, position, around)) {
     segments.push_back(
         {{at_height(position, level), at_height(landing, level)}, spread, ReturnPart::level});
-    const double nearest = distance_over_ground(position, landing) - around -
-                           std::max(0.0, rtl_profile.braking + dji_position_error - dji_tolerance);
+    const double nearest =
+        distance_over_ground(position, landing) - around - dji_extension(rtl_profile.braking);
     if (nearest < traits.level_as_it_is) {
       segments.push_back(
           {{position, at_height(landing, position.z())}, 0.0, ReturnPart::level_as_it_is});

@@ -46,6 +46,10 @@ inline constexpr double ardupilot_corner = 2.0;
 /// estimate, plus tolerance [m].
 inline constexpr double dji_lands_at_once = 8.0;
 
+/// Returns the distance from home beyond which DJI vehicles climb before they return [m]. `braking`
+/// is RtlProfile::braking.
+double dji_climb_distance(double braking);
+
 /// Landing points and altitude of returns. Heights are z in the local frame.
 struct RtlProfile {
   std::vector<AutopilotType> autopilots;  ///< Autopilots whose variants are all covered.

@@ -17,10 +17,6 @@ using Eigen::AlignedBox3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// Farther from home than this DJI's vehicles climb before they return (flight/return_path/
-/// return_law.h): the manuals' 50 m, and 4 m for their own measure and for rounding [m].
-constexpr double climbs_beyond = 54.0;
-
 flight::Obstacles without_fence(flight::Obstacles rules) {
   rules.fence.reset();
   return rules;
@@ -40,7 +36,9 @@ std::optional<Vector3d> PadSearch::find_pad_beside(const AlignedBox3d& unknown, 
   constexpr double farthest = 100.0, farthest_of_dji = 200.0;
   const bool is_dji = flight_.required_vehicle().autopilot == flight::AutopilotType::dji;
   if (is_dji && view_reach) {
-    const double first = *view_reach + climbs_beyond;
+    constexpr double rounding = 1.0;
+    const double first =
+        *view_reach + rounding + flight::dji_climb_distance(flight_.braking_before_return());
     if (const auto pad = between(unknown, top, first, farthest_of_dji)) return pad;
   }
   const double margin = 2.0 * flight_.clearance + 1.0;
