@@ -27,7 +27,7 @@ class DataflashTrack {
   FlownLog finish(const DataflashParser& parser) {
     FlownLogBuilder& builder = positions_.has_positions() ? positions_ : receiver_;
     // A camera with feedback logs TRIG at the command and CAM at the exposure.
-    for (const Capture& capture : camera_.empty() ? triggers_ : camera_) {
+    for (const LoggedState& capture : camera_.empty() ? triggers_ : camera_) {
       builder.add_capture(capture.time, capture.location, capture.above_takeoff, capture.yaw_deg);
       LoggedState& state = builder.log().captures.back();
       state.camera_yaw_deg = capture.camera_yaw_deg;
@@ -41,14 +41,6 @@ class DataflashTrack {
   }
 
  private:
-  /// Capture with the directions at its time.
-  struct Capture {
-    double time = 0.0;
-    Vector3d location;
-    double above_takeoff = unspecified, yaw_deg = unspecified;
-    double camera_yaw_deg = unspecified, camera_pitch_deg = unspecified;
-  };
-
   static std::optional<Vector3d> read_location(const DataflashMessage& message) {
     const auto latitude = message.number("Lat"), longitude = message.number("Lng"),
                height = message.number("Alt");
@@ -94,7 +86,7 @@ class DataflashTrack {
     camera_yaw_deg_ = yaw, camera_pitch_deg_ = *pitch;
   }
 
-  void add_capture(const DataflashMessage& message, std::vector<Capture>& captures) {
+  void add_capture(const DataflashMessage& message, std::vector<LoggedState>& captures) {
     const auto time = clock_.read(message.time());
     if (!time) return;
     Vector3d location = read_location(message).value_or(Vector3d::Constant(unspecified));
@@ -104,7 +96,7 @@ class DataflashTrack {
   }
 
   FlownLogBuilder positions_{"ArduPilot dataflash log"}, receiver_{"ArduPilot dataflash log"};
-  std::vector<Capture> camera_, triggers_;
+  std::vector<LoggedState> camera_, triggers_;
   double camera_yaw_deg_ = unspecified, camera_pitch_deg_ = unspecified;
   LogClock clock_{true};
 };

@@ -313,7 +313,7 @@ FlownLog read_mrk_track(std::string_view text) {
     builder.add_capture(*time, location, unspecified);
   }
   FlownLog log = builder.finish("contains no photo");
-  // Photos are not a track: the time between them is no gap.
+  // Photos are not a track, so the time between them does not count as a gap.
   std::erase_if(log.warnings, [](const std::string& warning) {
     return warning.find("without positions") != std::string::npos;
   });

@@ -53,7 +53,7 @@ class UlogTrack {
                                : local_.has_positions() ? local_
                                                         : receiver_;
     // camera_trigger is logged at the command, camera_capture at the exposure.
-    for (const Capture& capture : captures_.empty() ? triggers_ : captures_) {
+    for (const LoggedState& capture : captures_.empty() ? triggers_ : captures_) {
       builder.add_capture(capture.time, capture.location, capture.above_takeoff, capture.yaw_deg);
       LoggedState& state = builder.log().captures.back();
       state.camera_yaw_deg = capture.camera_yaw_deg;
@@ -70,18 +70,10 @@ class UlogTrack {
     }
     return builder.finish(
         "contains no position (vehicle_global_position or vehicle_local_position); set "
-        "SDLOG_PROFILE "
-        "to its default");
+        "SDLOG_PROFILE to its default");
   }
 
  private:
-  struct Capture {
-    double time = 0.0;
-    Vector3d location;
-    double above_takeoff = unspecified, yaw_deg = unspecified;
-    double camera_yaw_deg = unspecified, camera_pitch_deg = unspecified;
-  };
-
   /// Returns the height above the home position, or `unspecified` while it is unknown.
   double above_home(double height) const { return height - home_; }
 
@@ -189,8 +181,9 @@ class UlogTrack {
     const Vector3d location(message.number_or("lat", unspecified),
                             message.number_or("lon", unspecified),
                             message.number_or("alt", unspecified));
-    Capture capture{*time,           location,         above_home(location.z()), global_.yaw_deg(),
-                    camera_yaw_deg_, camera_pitch_deg_};
+    LoggedState capture{
+        *time,           location,         above_home(location.z()), global_.yaw_deg(),
+        camera_yaw_deg_, camera_pitch_deg_};
     captures_.push_back(capture);
   }
 
@@ -202,7 +195,7 @@ class UlogTrack {
   }
 
   FlownLogBuilder global_{"PX4 ULog"}, local_{"PX4 ULog"}, receiver_{"PX4 ULog"};
-  std::vector<Capture> captures_, triggers_;
+  std::vector<LoggedState> captures_, triggers_;
   double home_ = unspecified, camera_yaw_deg_ = unspecified, camera_pitch_deg_ = unspecified;
   std::size_t failed_ = 0;
   LogClock clock_{true};

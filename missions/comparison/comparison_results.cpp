@@ -187,7 +187,7 @@ std::string coverage_text(const FlightComparison& comparison) {
   if (coverage.patched) text += ", with the patch mission " + percent(*coverage.patched);
   text += coverage.flown.visible ? " of the visible surface (simulated)\n"
                                  : " of the surface (simulated)\n";
-  // Surface that no admissible view sees is no reason to fly again.
+  // Another flight cannot cover surface that no admissible view sees.
   std::vector<package::Hole> holes = coverage.missing.holes;
   std::erase_if(holes, [](const package::Hole& hole) {
     return hole.reason == survey::surfel::MissingReason::unreachable;
