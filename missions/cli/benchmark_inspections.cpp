@@ -17,7 +17,7 @@
 #include "missions/config/inspection_rules.h"
 #include "missions/config/mission_document.h"
 #include "missions/config/resolve.h"
-#include "missions/inspection/flight_comparison.h"
+#include "missions/inspection/flight_table.h"
 #include "missions/inspection/flight_file.h"
 #include "missions/inspection/inspection_mission.h"
 #include "missions/inspection/inspection_site.h"

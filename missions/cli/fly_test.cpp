@@ -91,22 +91,22 @@ TestedMission read_mission_package(const FlyTestCommandOptions& options) {
 /// Package to be tested, with its free space and the spaces that flights are evaluated against.
 class TestedPackage {
  public:
-  TestedPackage(const FlyTestCommandOptions& options, TestedMission survey)
-      : survey_(std::move(survey)),
-        rules_(survey_.flight.rules()),
-        space_({survey_.space.get(), &rules_}),
-        pad_space_(without_ground(survey_.flight.rules())) {
+  TestedPackage(const FlyTestCommandOptions& options, TestedMission mission)
+      : mission_(std::move(mission)),
+        rules_(mission_.flight.rules()),
+        space_({mission_.space.get(), &rules_}),
+        pad_space_(without_ground(mission_.flight.rules())) {
     if (!options.truth) return;
     const config::MissionSetup truth = config::read_mission(*options.truth);
     truth_ = package::true_space(
-        survey_.flight, evaluation::placed_model(truth.scene(), options.truth->parent_path()),
-        survey_.pad.z());
+        mission_.flight, evaluation::placed_model(truth.scene(), options.truth->parent_path()),
+        mission_.pad.z());
   }
 
-  const std::string& name() const { return survey_.name; }
-  const flight::FlightOptions& flight() const { return survey_.flight; }
-  const session::RunOptions& run() const { return survey_.run; }
-  const Eigen::Vector3d& pad() const { return survey_.pad; }
+  const std::string& name() const { return mission_.name; }
+  const flight::FlightOptions& flight() const { return mission_.flight; }
+  const session::RunOptions& run() const { return mission_.run; }
+  const Eigen::Vector3d& pad() const { return mission_.pad; }
 
   flight::SimulatedMission read(const std::filesystem::path& file, AutopilotType autopilot,
                                 const std::optional<double>& return_height) const {
@@ -116,7 +116,7 @@ class TestedPackage {
     flight::FlightFacts facts = own.facts();
     facts.pad = pad;
     facts.is_pad_known = true;
-    facts.views = survey_.views;
+    facts.views = mission_.views;
     facts.vehicle = vehicle;
     const flight::InterpretedRoute route = flight::interpret_file(file, facts);
     if (!route.problems.empty()) {
@@ -168,7 +168,7 @@ class TestedPackage {
     return rtl_profile;
   }
 
-  TestedMission survey_;
+  TestedMission mission_;
   flight::KnownSpace rules_;
   flight::JointSpace space_;
   flight::KnownSpace pad_space_;

@@ -173,8 +173,7 @@ std::string captures_text(const FlightComparison& comparison) {
 }
 
 std::string percent(const package::ReflightCoverage& coverage) {
-  std::string text = fmt::format("{:.2f}%", 100.0 * coverage.visible.value_or(coverage.all));
-  return text;
+  return fmt::format("{:.2f}%", 100.0 * coverage.visible.value_or(coverage.all));
 }
 
 std::string coverage_text(const FlightComparison& comparison) {

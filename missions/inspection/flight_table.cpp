@@ -1,4 +1,4 @@
-#include "missions/inspection/flight_comparison.h"
+#include "missions/inspection/flight_table.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
