@@ -30,8 +30,8 @@
 #include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
 #include "geometry/surfaces/mesh.h"
-#include "missions/inspection/flight_table.h"
 #include "missions/inspection/flight_file.h"
+#include "missions/inspection/flight_table.h"
 #include "sim/models/models.h"
 #include "survey/inspection/inspection_planner.h"
 
