@@ -118,7 +118,9 @@ std::string DataflashMessage::text(std::string_view label) const {
 
 double DataflashMessage::time() const {
   const std::optional<double> microseconds = number("TimeUS");
-  return microseconds ? 1e-6 * *microseconds : 1e-3 * number_or("TimeMS", 0.0);
+  if (microseconds) return 1e-6 * *microseconds;
+  // In GPS messages before Copter 3.3, TimeMS is the time of the week, and T that of the autopilot.
+  return 1e-3 * number_or("T", number_or("TimeMS", 0.0));
 }
 
 std::optional<double> DataflashMessage::reading(std::string_view label) const {

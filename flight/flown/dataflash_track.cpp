@@ -37,7 +37,9 @@ class DataflashTrack {
     if (parser.skipped() > 0) {
       builder.warn(std::to_string(parser.skipped()) + " damaged bytes skipped");
     }
-    return builder.finish("contains no position (POS or GPS); set LOG_BITMASK to its default");
+    return builder.finish(
+        has_receiver_ ? "contains no position: the receiver had no three-dimensional fix"
+                      : "contains no position (POS or GPS); set LOG_BITMASK to its default");
   }
 
  private:
@@ -60,7 +62,9 @@ class DataflashTrack {
   // Uses the first receiver while it has a three-dimensional position.
   void add_receiver(const DataflashMessage& message) {
     constexpr double is_3d = 3.0;
-    if (message.number_or("I", 0.0) != 0.0 || message.number_or("Status", is_3d) < is_3d) return;
+    if (message.number_or("I", 0.0) != 0.0) return;
+    has_receiver_ = true;
+    if (message.number_or("Status", is_3d) < is_3d) return;
     add_position(message, receiver_, "RelAlt");
   }
 
@@ -98,6 +102,7 @@ class DataflashTrack {
   FlownLogBuilder positions_{"ArduPilot dataflash log"}, receiver_{"ArduPilot dataflash log"};
   std::vector<LoggedState> camera_, triggers_;
   double camera_yaw_deg_ = unspecified, camera_pitch_deg_ = unspecified;
+  bool has_receiver_ = false;  ///< The log contains messages of the first receiver.
   LogClock clock_{true};
 };
 

@@ -217,6 +217,41 @@ std::optional<double> number_after(std::string_view line, std::string_view label
   return to_number(rest.substr(0, std::min(rest.find_first_of(" ]\t,"), rest.size())));
 }
 
+/// Position in a subtitle: latitude, longitude and height, and the height above take-off.
+struct SubtitlePosition {
+  Vector3d location;
+  double above_takeoff = unspecified;
+};
+
+/// Reads "[latitude: 48.1] [longitude: 11.5] [rel_alt: 5.0 abs_alt: 500.0]".
+std::optional<SubtitlePosition> labelled_position(std::string_view line) {
+  const auto latitude = number_after(line, "latitude"), longitude = number_after(line, "longitude");
+  if (!latitude || !longitude) return std::nullopt;
+  const double above = number_after(line, "rel_alt").value_or(unspecified);
+  return SubtitlePosition{{*latitude, *longitude, number_after(line, "abs_alt").value_or(above)},
+                          above};
+}
+
+/// Reads "GPS(11.5,48.1,16) BAROMETER:5.0" of older drones. The third number is a height or the
+/// number of satellites, and is ignored. Most drones write the longitude first.
+std::optional<SubtitlePosition> unlabelled_position(std::string_view line) {
+  constexpr std::string_view label = "GPS(";
+  const std::size_t found = line.find(label);
+  if (found == std::string_view::npos) return std::nullopt;
+  const std::string_view rest = line.substr(found + label.size());
+  const std::vector<std::string> fields = split(rest.substr(0, rest.find(')')), ',');
+  if (fields.size() < 2) return std::nullopt;
+  const auto first = to_number(geometry::trimmed(fields[0])),
+             second = to_number(geometry::trimmed(fields[1]));
+  std::string_view barometer = line.substr(std::min(line.find("BAROMETER"), line.size()));
+  barometer.remove_prefix(std::min(barometer.find_first_of("-0123456789"), barometer.size()));
+  const auto above = to_number(barometer.substr(0, barometer.find_first_not_of("-.0123456789")));
+  if (!first || !second || !above) return std::nullopt;
+  const bool is_latitude_first = std::abs(*second) > 90.0;
+  return SubtitlePosition{
+      {is_latitude_first ? *first : *second, is_latitude_first ? *second : *first, *above}, *above};
+}
+
 /// Returns the time of "00:01:02,345 --> ..." [s].
 std::optional<double> subtitle_time(std::string_view line) {
   const std::size_t arrow = line.find(" --> ");
@@ -326,12 +361,10 @@ FlownLog read_srt_track(std::string_view text) {
   for (std::string_view rest = text; !rest.empty();) {
     const std::string_view line = next_line(rest);
     time = subtitle_time(line).value_or(time);
-    const auto latitude = number_after(line, "latitude"),
-               longitude = number_after(line, "longitude");
-    if (!latitude || !longitude || std::isnan(time)) continue;
-    const double above = number_after(line, "rel_alt").value_or(unspecified);
-    const double height = number_after(line, "abs_alt").value_or(above);
-    builder.add_position(time, {*latitude, *longitude, height}, above);
+    std::optional<SubtitlePosition> position = labelled_position(line);
+    if (!position) position = unlabelled_position(line);
+    if (!position || std::isnan(time)) continue;
+    builder.add_position(time, position->location, position->above_takeoff);
   }
   return builder.finish("contains no position; enable video subtitles in the DJI app");
 }

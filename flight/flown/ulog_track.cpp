@@ -69,8 +69,9 @@ class UlogTrack {
                    fixed(parser.dropped(), 2) + " s in total");
     }
     return builder.finish(
-        "contains no position (vehicle_global_position or vehicle_local_position); set "
-        "SDLOG_PROFILE to its default");
+        has_unusable_ ? "contains no geodetic position: the receiver had no three-dimensional fix"
+                      : "contains no position (vehicle_global_position or "
+                        "vehicle_local_position); set SDLOG_PROFILE to its default");
   }
 
  private:
@@ -97,6 +98,7 @@ class UlogTrack {
                latitude = message.number("ref_lat"), longitude = message.number("ref_lon"),
                height = message.number("ref_alt");
     if (!x || !y || !z || !latitude || !longitude || !height) return;
+    has_unusable_ = true;
     if (message.number_or("xy_global", 0.0) == 0.0 || message.number_or("z_global", 0.0) == 0.0) {
       return;
     }
@@ -114,6 +116,7 @@ class UlogTrack {
 
   // Since PX4 1.15 degrees and metres, before 1e-7 degrees and millimetres.
   void add_receiver(const UlogMessage& message) {
+    has_unusable_ = true;
     if (message.number_or("fix_type", 0.0) < 3.0) return;
     if (const auto latitude = message.number("latitude_deg")) {
       add_location(message,
@@ -198,6 +201,7 @@ class UlogTrack {
   std::vector<LoggedState> captures_, triggers_;
   double home_ = unspecified, camera_yaw_deg_ = unspecified, camera_pitch_deg_ = unspecified;
   std::size_t failed_ = 0;
+  bool has_unusable_ = false;  ///< The log contains positions, perhaps without a fix or reference.
   LogClock clock_{true};
   std::optional<std::pair<Vector3d, LocalFrame>> frame_;  ///< of vehicle_local_position
 };

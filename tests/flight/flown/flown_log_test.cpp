@@ -1,4 +1,5 @@
 // Readers of flight logs: intact, truncated, with gaps and with random damage.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <random>
@@ -72,6 +73,55 @@ TEST(FlownLog, ReadsDataflashLayouts) {
     expect_sample_flight(track, layout == DataflashLayout::copter_4_6_of_2025);
     EXPECT_EQ(track.heights, "above take-off");
   }
+}
+
+TEST(FlownLog, ReadsDataflashBeforeCopter3_3) {
+  const FlownTrack track = read(
+      "12.BIN", write_dataflash(sample_flight(), site, pad, DataflashLayout::copter_3_2_of_2014));
+  EXPECT_THAT(track.warnings, IsEmpty());
+  EXPECT_FALSE(track.has_captures);
+  const auto high = std::ranges::max_element(
+      track.states, {}, [](const TrackState& state) { return state.position.z(); });
+  ASSERT_NE(high, track.states.end());
+  EXPECT_LT((high->position - Vector3d(10, 20, 15)).norm(), 0.02);
+  EXPECT_NEAR(high->yaw_deg, 0.0, 0.01);
+  const std::vector<FlownState> flight = sample_flight();
+  EXPECT_NEAR(track.states.back().time - track.states.front().time,
+              flight.back().state.time - flight.front().state.time - 4.0, 1.0);
+}
+
+TEST(FlownLog, ReadsSubtitlesWithoutLabels) {
+  // The third number is the number of satellites. Only a longitude can exceed 90 degrees.
+  const auto subtitles = [](const std::string& first, const std::string& second) {
+    return "1\n00:00:01,000 --> 00:00:02,000\nHOME(149.0251,-20.2532) 2017.08.05 14:11:51\n" +
+           first + "\n\n2\n00:00:02,000 --> 00:00:03,000\n" + second + "\n";
+  };
+  const TemporaryFolder folder;
+  const auto states = [&](const std::string& content) {
+    return read_flown_log(folder.file("a.srt", content)).states;
+  };
+  const auto old =
+      states(subtitles("GPS(8.2,47.1,16) BAROMETER:1.9", "GPS(8.3,47.1,16) BAROMETER:-2"));
+  ASSERT_EQ(old.size(), 2);
+  EXPECT_EQ(old[0].location, Vector3d(47.1, 8.2, 1.9));
+  EXPECT_EQ(old[1].location, Vector3d(47.1, 8.3, -2.0));
+  EXPECT_EQ(old[0].above_takeoff, 1.9);
+  EXPECT_EQ(old[1].time, 2.0);
+  const auto swapped = states(
+      subtitles("GPS(39.9,116.4,69.8) BAROMETER(91.2)", "GPS(39.8,116.4,69.8) BAROMETER(91.3)"));
+  ASSERT_EQ(swapped.size(), 2);
+  EXPECT_EQ(swapped[0].location, Vector3d(39.9, 116.4, 91.2));
+}
+
+TEST(FlownLog, NamesAMissingFix) {
+  const TemporaryFolder folder;
+  // Receivers without a fix report 0, 0.
+  std::vector<FlownState> flight = sample_flight();
+  for (FlownState& flown : flight) flown.state.position.head<2>().setZero();
+  const std::string log = write_dataflash(flight, Site{{0.0, 0.0, 0.0}, 0.0}, Vector3d::Zero(),
+                                          DataflashLayout::copter_3_2_of_2014);
+  EXPECT_THAT(thrown_message([&] { read_flown_log(folder.file("a.bin", log)); }),
+              HasSubstr("contains no position: the receiver had no three-dimensional fix"));
 }
 
 TEST(FlownLog, ReadsUlogLayouts) {

@@ -72,6 +72,32 @@ std::string quaternion(double yaw_deg, double pitch_deg) {
       static_cast<float>(std::cos(y) * std::sin(p)), static_cast<float>(std::sin(y) * std::cos(p)));
 }
 
+/// Returns a log of Copter 3.2: TimeMS of GPS is the time of the week, and T the autopilot's.
+std::string write_dataflash_of_2014(const std::vector<FlownState>& flight, const Site& site,
+                                    double pad_height) {
+  const LogFormat receiver{11, "GPS", "BIHBcLLeeEefI",
+                           "Status,TimeMS,Week,NSats,HDop,Lat,Lng,RelAlt,Alt,Spd,GCrs,VZ,T"};
+  const LogFormat attitude{12, "ATT", "IccccCC", "TimeMS,DesRoll,Roll,DesPitch,Pitch,DesYaw,Yaw"};
+  constexpr double time_of_week = 421'400'000.0;
+  DataflashWriter writer;
+  for (const LogFormat& format : {receiver, attitude}) writer.describe(format);
+  const LocalFrame frame(site.origin);
+  for (const FlownState& flown : flight) {
+    const double time = std::round(1e3 * (start_time + flown.state.time));
+    const GeodeticPoint point = frame.to_geodetic(flown.state.position);
+    writer.add(attitude,
+               {{"TimeMS", time}, {"Yaw", std::fmod(flown.state.yaw_deg + 360.0, 360.0)}});
+    writer.add(receiver, {{"Status", 3.0},
+                          {"TimeMS", time_of_week + time},
+                          {"Lat", point.latitude_deg},
+                          {"Lng", point.longitude_deg},
+                          {"RelAlt", point.height - pad_height},
+                          {"Alt", point.height - undulation(site)},
+                          {"T", time}});
+  }
+  return writer.bytes();
+}
+
 }  // namespace
 
 std::vector<FlownState> fly_polyline(const std::vector<Vector3d>& points,
@@ -100,6 +126,11 @@ std::vector<FlownState> fly_polyline(const std::vector<Vector3d>& points,
 
 std::string write_dataflash(const std::vector<FlownState>& flight, const Site& site,
                             const Vector3d& pad, DataflashLayout layout) {
+  const LocalFrame frame(site.origin);
+  const double pad_height = frame.to_geodetic(pad).height;
+  if (layout == DataflashLayout::copter_3_2_of_2014) {
+    return write_dataflash_of_2014(flight, site, pad_height);
+  }
   const bool is_old = layout == DataflashLayout::copter_3_6_of_2019;
   const LogFormat position{11, "POS", "QLLfff", "TimeUS,Lat,Lng,Alt,RelHomeAlt,RelOriginAlt"};
   const LogFormat attitude =
@@ -118,8 +149,6 @@ std::string write_dataflash(const std::vector<FlownState>& flight, const Site& s
   DataflashWriter writer;
   for (const LogFormat& format : {position, attitude, camera}) writer.describe(format);
   if (has_mount) writer.describe(mount);
-  const LocalFrame frame(site.origin);
-  const double pad_height = frame.to_geodetic(pad).height;
   for (const FlownState& flown : flight) {
     const double time = std::round(1e6 * (start_time + flown.state.time));
     const GeodeticPoint point = frame.to_geodetic(flown.state.position);

@@ -24,8 +24,13 @@ std::vector<FlownState> fly_polyline(const std::vector<Eigen::Vector3d>& points,
                                      const std::vector<std::size_t>& captures, double speed = 4.0,
                                      double rest = 2.0);
 
-/// Message layouts of ArduPilot versions.
-enum class DataflashLayout { copter_3_6_of_2019, copter_4_1_of_2021, copter_4_6_of_2025 };
+/// Message layouts of ArduPilot versions. That of 2014 has neither POS nor captures.
+enum class DataflashLayout {
+  copter_3_2_of_2014,
+  copter_3_6_of_2019,
+  copter_4_1_of_2021,
+  copter_4_6_of_2025
+};
 
 /// Returns an ArduPilot log with POS, ATT, MNT (since 2022) and CAM messages. Heights are those of
 /// `site`, which must have a geoid undulation; `pad` is the take-off point.
