@@ -254,6 +254,24 @@ std::vector<std::optional<std::size_t>> align_captures(const std::vector<Planned
   return found;
 }
 
+/// Sets the flown length and duration.
+void measure_track(const FlownTrack& track, RouteComparison& result) {
+  for (std::size_t i = 1; i < track.states.size(); ++i) {
+    const double time = track.states[i].time - track.states[i - 1].time;
+    result.length += (track.states[i].position - track.states[i - 1].position).norm();
+    if (time <= min_log_gap) result.duration += time;
+  }
+}
+
+/// Adds a capture without a plan.
+void add_other_capture(TrackState state, RouteComparison& result) {
+  ++result.num_other_captures;
+  complete_direction(state, {});
+  if (std::isfinite(state.camera_yaw_deg) && std::isfinite(state.camera_pitch_deg)) {
+    result.other_captures.push_back(state);
+  }
+}
+
 /// Comparison of one track with one plan.
 class Comparison {
  public:
@@ -274,7 +292,7 @@ class Comparison {
     RouteComparison result;
     result.legs.resize(plan_.legs.size());
     result.captures.resize(plan_.captures.size());
-    measure_track(result);
+    measure_track(track_, result);
     measure_legs(result.legs);
     measure_times(result.legs);
     if (track_.has_captures) {
@@ -289,14 +307,6 @@ class Comparison {
  private:
   double distance_to_piece(std::size_t sample, std::size_t piece) const {
     return distance_to_segment(samples_[sample].position, pieces_[piece].from, pieces_[piece].to);
-  }
-
-  void measure_track(RouteComparison& result) const {
-    for (std::size_t i = 1; i < track_.states.size(); ++i) {
-      const double time = track_.states[i].time - track_.states[i - 1].time;
-      result.length += (track_.states[i].position - track_.states[i - 1].position).norm();
-      if (time <= min_log_gap) result.duration += time;
-    }
   }
 
   /// Marks the pieces with a flown position, and those between two positions of a piece each.
@@ -412,13 +422,7 @@ class Comparison {
       result.captures[i] = make_capture(plan_.captures[i], track_.captures[*found[i]]);
     }
     for (std::size_t j = 0; j < track_.captures.size(); ++j) {
-      if (is_planned[j]) continue;
-      ++result.num_other_captures;
-      TrackState state = track_.captures[j];
-      complete_direction(state, {});
-      if (std::isfinite(state.camera_yaw_deg) && std::isfinite(state.camera_pitch_deg)) {
-        result.other_captures.push_back(state);
-      }
+      if (!is_planned[j]) add_other_capture(track_.captures[j], result);
     }
   }
 
@@ -509,6 +513,14 @@ void append_flight(PlannedFlight& flight, PlannedFlight next) {
 void ComparisonOptions::validate() const {
   if (std::isfinite(max_deviation) && max_deviation > 0.0) return;
   throw Error(ErrorKind::bad_config, "the maximum deviation must be positive");
+}
+
+RouteComparison measure_flight(const FlownTrack& track) {
+  if (track.states.empty()) throw Error(ErrorKind::bad_file, "contains no position");
+  RouteComparison result;
+  measure_track(track, result);
+  for (const TrackState& capture : track.captures) add_other_capture(capture, result);
+  return result;
 }
 
 RouteComparison compare_route(const PlannedFlight& plan, const FlownTrack& track,

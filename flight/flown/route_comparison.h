@@ -90,6 +90,9 @@ struct RouteComparison {
   Eigen::Vector3d mean_offset = Eigen::Vector3d::Zero();
 };
 
+/// Returns the length, duration and captures of a flight without a plan.
+RouteComparison measure_flight(const FlownTrack& track);
+
 /// Compares a track with the plan. Throws the errors of ComparisonOptions::validate().
 RouteComparison compare_route(const PlannedFlight& plan, const FlownTrack& track,
                               const ComparisonOptions& options);

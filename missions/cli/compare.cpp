@@ -5,6 +5,7 @@
 
 #include <CLI/App.hpp>
 
+#include "geometry/error.h"
 #include "geometry/io/output_folder.h"
 #include "missions/comparison/flight_comparison.h"
 
@@ -17,12 +18,20 @@ int compare(const CompareOptions& options, const Console& console) {
       .logs = options.logs,
       .routes = options.routes,
       .truth = options.truth,
+      .cloud = options.cloud,
       .comparison = {.max_deviation = options.max_deviation},
       .heights = options.heights == "takeoff"    ? flight::TrackHeights::takeoff
                  : options.heights == "absolute" ? flight::TrackHeights::absolute
                                                  : flight::TrackHeights::automatic,
       .overrides = options.overrides};
-  geometry::OutputFolder folder(options.out.value_or(options.package / "compare"));
+  const bool has_plan = !std::filesystem::is_regular_file(options.package);
+  if (!has_plan && !options.routes.empty()) {
+    throw Error(ErrorKind::bad_usage,
+                "--route needs the results folder of a plan instead of a mission file");
+  }
+  const std::filesystem::path results =
+      has_plan ? options.package : std::filesystem::path("results") / options.package.stem();
+  geometry::OutputFolder folder(options.out.value_or(results / "compare"));
   folder.replace([](std::string_view name) {
     return name == comparison::comparison_name || name.starts_with(comparison::patch_stem);
   });
@@ -46,7 +55,10 @@ void add_compare(CLI::App& app, const Console& console, Action& action) {
       "compare", "Compare flight logs with their mission and plan the missed views");
   const auto options = std::make_shared<CompareOptions>();
   const auto keys = std::make_shared<KeyOptions>();
-  command->add_option("package", options->package, "Results folder of plan")->required();
+  command
+      ->add_option("package", options->package,
+                   "Results folder of plan; without a plan, a mission file")
+      ->required();
   command
       ->add_option("logs", options->logs,
                    "Flight logs in flight order: ArduPilot .bin, PX4 .ulg, .tum, .csv, DJI .MRK, "
@@ -70,7 +82,11 @@ void add_compare(CLI::App& app, const Console& console, Action& action) {
   command->add_option("--truth", options->truth,
                       "Mission file whose scene is used as ground truth (default: the scene of the "
                       "mission)");
-  command->add_option("--out", options->out, "Output folder (default: compare in the package)");
+  command->add_option("--cloud", options->cloud,
+                      "Cloud in the mission's frame whose distance is measured (default: that of "
+                      "the results folder)");
+  command->add_option("--out", options->out,
+                      "Output folder (default: compare in the results folder of the mission)");
   command->add_option("--threads", keys->threads, "Number of threads (0: all processors)");
   command->add_flag("--quiet", options->is_quiet, "Print errors only");
   add_set_option(*command, *keys);

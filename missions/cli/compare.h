@@ -12,11 +12,13 @@
 namespace skycap::missions::cli {
 
 struct CompareOptions {
-  std::filesystem::path package;              ///< results folder written by plan()
+  /// results folder written by plan(), or a mission file
+  std::filesystem::path package;
   std::vector<std::filesystem::path> logs;    ///< flight logs in flight order
   std::vector<std::filesystem::path> routes;  ///< route files; default: those of the vehicle
   /// Mission file whose scene is used as ground truth.
   std::optional<std::filesystem::path> truth;
+  std::optional<std::filesystem::path> cloud;  ///< measured cloud
   double max_deviation = 3.0;    ///< distance at which a leg or capture counts as flown [m]
   std::string heights = "auto";  ///< auto, takeoff or absolute
   std::optional<std::filesystem::path> out;  ///< output folder; default: compare in the package

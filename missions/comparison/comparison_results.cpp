@@ -89,10 +89,21 @@ Json captures_json(const FlightComparison& comparison) {
 }
 
 Json coverage_json(const ComparedCoverage& coverage) {
-  return {{"planned", package::again_json(coverage.planned)},
+  return {{"planned", coverage.planned ? package::again_json(*coverage.planned) : Json()},
           {"flown", package::again_json(coverage.flown)},
           {"patched", coverage.patched ? package::again_json(*coverage.patched) : Json()},
           {"surface", package::missing_json(coverage.missing, "simulator")}};
+}
+
+Json photos_json(const ComparedPhotos& photos) {
+  const auto figures = [](const survey::photo::PhotoFigures& set) {
+    return Json{{"photos", set.photos},
+                {"expected_completeness", set.completeness},
+                {"satisfied", set.share(set.satisfied)}};
+  };
+  return {{"planned", photos.planned ? figures(*photos.planned) : Json()},
+          {"flown", figures(photos.flown)},
+          {"patched", photos.patched ? figures(*photos.patched) : Json()}};
 }
 
 Json patch_json(const FlightComparison& comparison) {
@@ -148,6 +159,9 @@ std::string legs_text(const FlightComparison& comparison) {
 std::string captures_text(const FlightComparison& comparison) {
   const std::size_t planned = comparison.plan.captures.size();
   const std::size_t missed = comparison.num_missed_captures();
+  if (!comparison.has_plan) {
+    return fmt::format("  captures  {} in the log\n", comparison.route.num_other_captures);
+  }
   if (planned == 0) return "  captures  none in the route file\n";
   std::string text = fmt::format("  captures  {} planned, {} missed", planned, missed);
   std::string items;
@@ -172,17 +186,62 @@ std::string captures_text(const FlightComparison& comparison) {
   return text;
 }
 
+/// Returns the lines with the flown legs, time and length.
+std::string flight_text(const FlightComparison& comparison) {
+  const double minutes = comparison.route.duration / 60.0;
+  if (!comparison.has_plan) {
+    return fmt::format("  time      {:.1f} min flown; {:.1f} m flown\n", minutes,
+                       comparison.route.length);
+  }
+  double max_error = 0.0;
+  for (const flight::LegComparison& leg : comparison.route.legs) {
+    max_error = std::max(max_error, leg.max_error);
+  }
+  return fmt::format(
+      "  legs      {} of {} flown, maximum error {:.2f} m\n"
+      "  time      {:.1f} min flown, {:.1f} min planned; {:.1f} m flown\n",
+      comparison.num_flown_legs(), comparison.plan.legs.size(), max_error, minutes,
+      planned_duration(comparison) / 60.0, comparison.route.length);
+}
+
+std::string distance_text(const std::optional<SurfaceDistance>& nearest, const char* surface,
+                          double clearance) {
+  if (!nearest) return "";
+  std::string text = fmt::format(
+      "  clearance minimum {:.2f} m to the {}, {:.0f} s after take-off at {}; required {:.2f} m\n",
+      nearest->distance, surface, nearest->time, position_text(nearest->position), clearance);
+  if (nearest->distance < clearance) {
+    text += "  Warning: the flight violated the required clearance.\n";
+  }
+  return text;
+}
+
 std::string percent(const package::ReflightCoverage& coverage) {
   return fmt::format("{:.2f}%", 100.0 * coverage.visible.value_or(coverage.all));
 }
 
+/// Returns the expected completeness as text.
+std::string percent(const survey::photo::PhotoFigures& figures) {
+  return fmt::format("{:.1f}%", 100.0 * figures.completeness);
+}
+
+std::string photos_text(const ComparedPhotos& photos) {
+  std::string text = "  expected  completeness ";
+  if (photos.planned) text += "planned " + percent(*photos.planned) + ", ";
+  text += "flown " + percent(photos.flown);
+  if (photos.patched) text += ", with the patch mission " + percent(*photos.patched);
+  return text + " of the exposed surface\n";
+}
+
 std::string coverage_text(const FlightComparison& comparison) {
+  if (comparison.photos) return photos_text(*comparison.photos);
   if (!comparison.coverage) {
     return "  coverage  not computed: " + comparison.no_coverage + "\n";
   }
   const ComparedCoverage& coverage = *comparison.coverage;
-  std::string text = fmt::format("  coverage  planned {}, flown {}", percent(coverage.planned),
-                                 percent(coverage.flown));
+  std::string text = "  coverage  ";
+  if (coverage.planned) text += "planned " + percent(*coverage.planned) + ", ";
+  text += "flown " + percent(coverage.flown);
   if (coverage.patched) text += ", with the patch mission " + percent(*coverage.patched);
   text += coverage.flown.visible ? " of the visible surface (simulated)\n"
                                  : " of the surface (simulated)\n";
@@ -226,14 +285,20 @@ void stage_comparison(const FlightComparison& comparison, const CompareRequest& 
   Json logs = Json::array();
   for (const std::filesystem::path& log : request.logs) logs.push_back(log.filename().string());
   Json clearance{{"required_m", comparison.clearance}};
-  if (comparison.cloud_distance) {
-    clearance["min_cloud_distance_m"] = comparison.cloud_distance->distance;
-    clearance["position"] = to_json(comparison.cloud_distance->position);
-    clearance["time_s"] = comparison.cloud_distance->time;
+  if (const auto& nearest = comparison.cloud_distance) {
+    clearance["min_cloud_distance_m"] = nearest->distance;
+    clearance["position"] = to_json(nearest->position);
+    clearance["time_s"] = nearest->time;
+  }
+  if (const auto& nearest = comparison.model_distance) {
+    clearance["model"] = {{"min_distance_m", nearest->distance},
+                          {"position", to_json(nearest->position)},
+                          {"time_s", nearest->time}};
   }
   const Json json{{"mission", comparison.name},
                   {"version", version},
                   {"complete", true},
+                  {"has_plan", comparison.has_plan},
                   {"route_files", comparison.files},
                   {"logs", logs},
                   {"log_kind", comparison.track.kind},
@@ -247,38 +312,22 @@ void stage_comparison(const FlightComparison& comparison, const CompareRequest& 
                   {"captures", captures_json(comparison)},
                   {"clearance", clearance},
                   {"coverage", comparison.coverage ? coverage_json(*comparison.coverage) : Json()},
+                  {"photos", comparison.photos ? photos_json(*comparison.photos) : Json()},
                   {"patch", patch_json(comparison)}};
   folder.write(comparison_name, support::json_text(json));
 }
 
 std::string comparison_text(const FlightComparison& comparison) {
-  const std::size_t legs = comparison.plan.legs.size(), flown = comparison.num_flown_legs();
-  double max_error = 0.0;
-  for (const flight::LegComparison& leg : comparison.route.legs) {
-    max_error = std::max(max_error, leg.max_error);
-  }
-  std::string text = fmt::format(
-      "{}: {}, heights {}\n  legs      {} of {} flown, maximum error {:.2f} m\n"
-      "  time      {:.1f} min flown, {:.1f} min planned; {:.1f} m flown\n",
-      comparison.name, comparison.track.kind, comparison.track.heights, flown, legs, max_error,
-      comparison.route.duration / 60.0, planned_duration(comparison) / 60.0,
-      comparison.route.length);
-  text += captures_text(comparison);
-  if (comparison.cloud_distance) {
-    const CloudDistance& nearest = *comparison.cloud_distance;
-    text += fmt::format(
-        "  clearance minimum {:.2f} m to the measured cloud, {:.0f} s after take-off at {}; "
-        "required {:.2f} m\n",
-        nearest.distance, nearest.time, position_text(nearest.position), comparison.clearance);
-    if (nearest.distance < comparison.clearance) {
-      text += "  Warning: the flight violated the required clearance.\n";
-    }
-  }
+  std::string text = fmt::format("{}: {}, heights {}\n", comparison.name, comparison.track.kind,
+                                 comparison.track.heights) +
+                     flight_text(comparison) + captures_text(comparison);
+  text += distance_text(comparison.cloud_distance, "measured cloud", comparison.clearance);
+  text += distance_text(comparison.model_distance, "model", comparison.clearance);
   text += coverage_text(comparison) + patch_text(comparison);
   for (const std::string& warning : comparison.track.warnings) {
     text += "  Warning: log: " + warning + ".\n";
   }
-  return text + legs_text(comparison);
+  return comparison.has_plan ? text + legs_text(comparison) : text;
 }
 
 }  // namespace skycap::missions::comparison

@@ -5,17 +5,22 @@
 #include <limits>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "flight/export/export.h"
 #include "flight/interpreter/interpret.h"
 #include "geometry/angle.h"
 #include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
 #include "geometry/points/spatial_index.h"
+#include "geometry/surfaces/mesh_distance.h"
+#include "missions/config/photo_rules.h"
 #include "missions/config/resolve.h"
 #include "missions/evaluation/survey_scene.h"
 #include "missions/package/fleet/timetable_file.h"
 #include "missions/package/package.h"
 #include "missions/package/replanned_mission.h"
+#include "missions/photo/photo_site.h"
 
 namespace skycap::missions::comparison {
 namespace {
@@ -78,37 +83,56 @@ flight::PlannedFlight read_route(const std::filesystem::path& file,
   return flight::make_planned_flight(route, motion);
 }
 
-flight::FlownTrack read_track(const CompareRequest& request,
-                              const package::PackagedSurvey& survey) {
+/// Distance from which a log counts as that of another place [m].
+constexpr double max_log_distance = 2000.0;
+
+/// Throws Error{bad_file} if the track stays far from `positions`, those of the mission.
+void require_near(const flight::FlownTrack& track, const std::vector<Vector3d>& positions,
+                  const std::filesystem::path& log) {
+  double min_distance = std::numeric_limits<double>::infinity();
+  for (const flight::TrackState& state : track.states) {
+    for (const Vector3d& position : positions) {
+      min_distance = std::min(min_distance, (state.position - position).head<2>().norm());
+    }
+  }
+  if (min_distance <= max_log_distance) return;
+  throw Error(ErrorKind::bad_file,
+              fmt::format("{}: the flight stays {:.1f} km away from the mission; use a log of this "
+                          "mission, and check site.latitude_deg and site.longitude_deg",
+                          log.string(), 1e-3 * min_distance));
+}
+
+flight::FlownTrack read_track(const CompareRequest& request, const flight::FlightOptions& options,
+                              const Vector3d& pad, const std::vector<Vector3d>& positions) {
   flight::FlownTrack track;
   for (const std::filesystem::path& log : request.logs) {
     const flight::FlownLog content = flight::read_flown_log(log);
+    flight::FlownTrack next;
     try {
-      append_track(track, place_track(content, survey.flight.site, survey.flight.is_georeferenced,
-                                      survey.pad, request.heights));
+      next = place_track(content, options.site, options.is_georeferenced, pad, request.heights);
     } catch (const Error& error) {
       throw Error(error.kind(), log.string() + ": " + error.what());
     }
+    require_near(next, positions, log);
+    append_track(track, std::move(next));
   }
   return track;
 }
 
-/// Returns the minimum distance of the track from the cloud of the survey, except above the pad.
-std::optional<CloudDistance> measure_cloud(const std::filesystem::path& file,
-                                           const package::PackagedSurvey& survey,
-                                           const flight::FlownTrack& track) {
-  constexpr double typical_radius = 2.0, step = 0.1, pad_radius = 3.0;
-  if (!std::filesystem::exists(file)) return std::nullopt;
-  geometry::SpatialIndex index(typical_radius);
-  for (const Eigen::Vector3f& point : geometry::read_cloud(file).positions) index.insert(point);
-  if (index.size() == 0) return std::nullopt;
-  CloudDistance nearest{std::numeric_limits<double>::infinity()};
+/// Returns the minimum of `distance` over the track, except above the pad.
+template <class Distance>
+std::optional<SurfaceDistance> measure_track(const flight::FlownTrack& track,
+                                             const std::optional<Vector3d>& pad, double climb,
+                                             const Distance& distance) {
+  constexpr double step = 0.1, pad_radius = 3.0;
+  SurfaceDistance nearest{std::numeric_limits<double>::infinity()};
   const auto measure = [&](const Vector3d& position, double time) {
-    const Vector3d from_pad = position - survey.pad;
-    if (from_pad.head<2>().norm() < pad_radius && from_pad.z() < survey.flight.climb()) return;
-    const auto found = index.nearest(position.cast<float>(), 1);
-    const double distance = (index.point(found.front().index).cast<double>() - position).norm();
-    if (distance < nearest.distance) nearest = {distance, position, time};
+    if (pad) {
+      const Vector3d from_pad = position - *pad;
+      if (from_pad.head<2>().norm() < pad_radius && from_pad.z() < climb) return;
+    }
+    const double found = distance(position);
+    if (found < nearest.distance) nearest = {found, position, time};
   };
   const std::vector<flight::TrackState>& states = track.states;
   const double begin = states.front().time;
@@ -128,6 +152,20 @@ std::optional<CloudDistance> measure_cloud(const std::filesystem::path& file,
   }
   if (std::isinf(nearest.distance)) return std::nullopt;
   return nearest;
+}
+
+/// Returns the minimum distance of the track from a cloud, except above the pad.
+std::optional<SurfaceDistance> measure_cloud(const std::filesystem::path& file,
+                                             const flight::FlownTrack& track,
+                                             const std::optional<Vector3d>& pad, double climb) {
+  constexpr double typical_radius = 2.0;
+  geometry::SpatialIndex index(typical_radius);
+  for (const Eigen::Vector3f& point : geometry::read_cloud(file).positions) index.insert(point);
+  if (index.size() == 0) return std::nullopt;
+  return measure_track(track, pad, climb, [&](const Vector3d& position) {
+    const auto found = index.nearest(position.cast<float>(), 1);
+    return (index.point(found.front().index).cast<double>() - position).norm();
+  });
 }
 
 geometry::View make_view(const Vector3d& position, double yaw_deg, double pitch_deg) {
@@ -232,6 +270,7 @@ class CoverageSimulation {
   package::ReflightCoverage measure(const simulation::CoveredAgain& covered) const {
     return package::simulate_reflight(figures_, covered);
   }
+  const evaluation::SurveyScene& scene() const { return scene_; }
   package::MissingSurface find_missing(const simulation::CoveredAgain& covered,
                                        const std::vector<ViewInFlight>& views) const {
     std::vector<geometry::View> poses;
@@ -278,20 +317,29 @@ std::vector<ViewInFlight> flown_views(const FlightComparison& comparison) {
 
 /// Returns why the coverage cannot be simulated; empty if it can.
 std::string find_obstacle(const evaluation::SimulationOptions& options,
-                          const flight::PlannedFlight& plan) {
+                          const FlightComparison& comparison) {
   if (options.scene.model.empty() && !options.scene.is_truth_prior()) {
     return "the mission has no scene; name a mission with --truth";
   }
   if (options.survey.flight.capture.scans_in_flight())
     return "the laser scanner measures in flight";
-  if (plan.captures.empty()) return "the route file commands no capture";
+  if (comparison.has_plan && comparison.plan.captures.empty()) {
+    return "the route file commands no capture";
+  }
+  if (!comparison.has_plan && comparison.route.other_captures.empty()) {
+    return comparison.route.num_other_captures == 0
+               ? "the log contains no camera event"
+               : "the log contains no viewing direction of the camera";
+  }
   return "";
 }
 
 ComparedCoverage compute_coverage(const CoverageSimulation& simulation,
                                   const FlightComparison& comparison) {
   ComparedCoverage coverage;
-  coverage.planned = simulation.measure(simulation.simulate(planned_views(comparison.plan)));
+  if (comparison.has_plan) {
+    coverage.planned = simulation.measure(simulation.simulate(planned_views(comparison.plan)));
+  }
   std::vector<ViewInFlight> views = flown_views(comparison);
   const simulation::CoveredAgain covered = simulation.simulate(views);
   coverage.flown = simulation.measure(covered);
@@ -305,6 +353,28 @@ ComparedCoverage compute_coverage(const CoverageSimulation& simulation,
   return coverage;
 }
 
+/// Returns the expected reconstruction by the photos of a mission with a photo camera.
+ComparedPhotos evaluate_photos(const config::MissionSetup& setup,
+                               const FlightComparison& comparison, const std::stop_token& stop) {
+  const config::PhotoSetup photo = config::photo_setup(*setup.document);
+  const photo::PhotoAirspace airspace(setup, setup.run.threads);
+  std::vector<std::vector<geometry::View>> sets(3);
+  for (const ViewInFlight& view : planned_views(comparison.plan)) sets[0].push_back(view.view);
+  for (const ViewInFlight& view : flown_views(comparison)) sets[1].push_back(view.view);
+  sets[2] = sets[1];
+  if (comparison.patch) {
+    const auto patch = flight::photo_views(comparison.patch->route);
+    sets[2].insert(sets[2].end(), patch.begin(), patch.end());
+  }
+  const std::vector<survey::photo::PhotoFigures> figures =
+      survey::photo::evaluate_photos(photo.options, photo::photo_site(setup, airspace),
+                                     {setup.run.seed, setup.run.threads, stop}, sets);
+  ComparedPhotos photos{.flown = figures[1]};
+  if (comparison.has_plan) photos.planned = figures[0];
+  if (comparison.patch) photos.patched = figures[2];
+  return photos;
+}
+
 }  // namespace
 
 std::size_t FlightComparison::num_flown_legs() const {
@@ -316,9 +386,77 @@ std::size_t FlightComparison::num_missed_captures() const {
   return static_cast<std::size_t>(std::ranges::count(is_missed, true));
 }
 
+namespace {
+
+/// Computes coverage and the distance from the model in the scene of the mission, or of
+/// `request.truth`.
+void simulate_coverage(const config::MissionSetup& setup, std::filesystem::path scene_folder,
+                       const CompareRequest& request, const std::optional<Vector3d>& pad,
+                       FlightComparison& comparison, const std::stop_token& stop) {
+  if (setup.document->is_photo()) {
+    comparison.photos = evaluate_photos(setup, comparison, stop);
+    return;
+  }
+  // The scene may be that of another mission. Sensor, vehicle and evaluation are those of the plan.
+  evaluation::SimulationOptions options = setup.simulation;
+  if (request.truth) {
+    options.scene = config::read_mission(*request.truth).scene();
+    scene_folder = request.truth->parent_path();
+  }
+  comparison.no_coverage = find_obstacle(options, comparison);
+  const bool has_scene = !options.scene.model.empty() || options.scene.is_truth_prior();
+  if (!has_scene || (comparison.has_plan && !comparison.no_coverage.empty())) return;
+  const CoverageSimulation simulation(options, setup.run, scene_folder, stop);
+  if (!comparison.has_plan) {
+    const geometry::MeshDistance model(simulation.scene().model(), setup.run.threads);
+    comparison.model_distance =
+        measure_track(comparison.track, pad, setup.flight().climb(),
+                      [&](const Vector3d& position) { return model.distance(position); });
+  }
+  if (comparison.no_coverage.empty()) {
+    comparison.coverage = compute_coverage(simulation, comparison);
+  }
+}
+
+/// Returns the corners of the mission's target or unknown box, and its take-off point.
+std::vector<Vector3d> mission_positions(const config::MissionSetup& setup) {
+  std::vector<Vector3d> positions{setup.flight().takeoff.value_or(Vector3d::Zero())};
+  const Eigen::AlignedBox3d box = setup.simulation.scene_box();
+  if (!box.isEmpty()) positions.push_back(box.center());
+  return positions;
+}
+
+FlightComparison compare_without_plan(const CompareRequest& request,
+                                      const std::function<void(const std::string&)>& report,
+                                      const std::stop_token& stop) {
+  report("reading " + request.folder.string());
+  const config::MissionSetup setup = config::read_mission(request.folder, request.overrides);
+  const std::optional<Vector3d>& pad = setup.flight().takeoff;
+  FlightComparison comparison;
+  comparison.name = setup.name;
+  comparison.has_plan = false;
+  comparison.clearance = setup.flight().clearance;
+  report("reading " + request.logs.front().string());
+  comparison.track =
+      read_track(request, setup.flight(), pad.value_or(Vector3d::Zero()), mission_positions(setup));
+  comparison.route = flight::measure_flight(comparison.track);
+  if (request.cloud) {
+    comparison.cloud_distance =
+        measure_cloud(*request.cloud, comparison.track, pad, setup.flight().climb());
+  }
+  report(setup.name + ": computing coverage");
+  simulate_coverage(setup, request.folder.parent_path(), request, pad, comparison, stop);
+  return comparison;
+}
+
+}  // namespace
+
 FlightComparison compare_flight(const CompareRequest& request, geometry::OutputFolder& folder,
                                 const std::function<void(const std::string&)>& report,
                                 const std::stop_token& stop) {
+  if (std::filesystem::is_regular_file(request.folder)) {
+    return compare_without_plan(request, report, stop);
+  }
   report("reading " + request.folder.string());
   const config::MissionSetup setup =
       package::read_package_summary(request.folder, request.overrides).mission;
@@ -333,28 +471,25 @@ FlightComparison compare_flight(const CompareRequest& request, geometry::OutputF
     append_flight(comparison.plan, read_route(file, survey));
   }
   report("reading " + request.logs.front().string());
-  comparison.track = read_track(request, survey);
+  std::vector<Vector3d> positions{survey.pad};
+  for (const flight::PlannedLeg& leg : comparison.plan.legs) {
+    positions.insert(positions.end(), leg.points.begin(), leg.points.end());
+  }
+  comparison.track = read_track(request, survey.flight, survey.pad, positions);
   report(survey.name + ": comparing");
   comparison.route = flight::compare_route(comparison.plan, comparison.track, request.comparison);
   find_missed(survey, comparison);
-  comparison.cloud_distance = measure_cloud(request.folder / cloud_name, survey, comparison.track);
+  const std::filesystem::path cloud = request.cloud.value_or(request.folder / cloud_name);
+  if (request.cloud || std::filesystem::exists(cloud)) {
+    comparison.cloud_distance =
+        measure_cloud(cloud, comparison.track, survey.pad, survey.flight.climb());
+  }
   if (!comparison.missed_views.empty() && !survey.flight.is_fleet()) {
     report(survey.name + ": planning the patch mission");
     comparison.patch = plan_patch(survey, comparison.missed_views, folder, stop);
   }
   report(survey.name + ": computing coverage");
-  // The scene may be that of another mission. Sensor, vehicle and evaluation are those of the plan.
-  evaluation::SimulationOptions simulation = setup.simulation;
-  std::filesystem::path scene_folder;
-  if (request.truth) {
-    simulation.scene = config::read_mission(*request.truth).scene();
-    scene_folder = request.truth->parent_path();
-  }
-  comparison.no_coverage = find_obstacle(simulation, comparison.plan);
-  if (comparison.no_coverage.empty()) {
-    comparison.coverage =
-        compute_coverage(CoverageSimulation(simulation, setup.run, scene_folder, stop), comparison);
-  }
+  simulate_coverage(setup, {}, request, survey.pad, comparison, stop);
   return comparison;
 }
 

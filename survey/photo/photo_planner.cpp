@@ -117,6 +117,17 @@ class Planner {
     return std::move(result_);
   }
 
+  std::vector<PhotoFigures> evaluate(const std::vector<std::vector<geometry::View>>& sets) {
+    const std::size_t count = samples_for(result_.surface_area, rule_.view_distance);
+    evaluated_on_ = sampled(count, 2 * run_.seed + 1);
+    const Observer evaluator(camera_, rule_, sights_, evaluated_on_);
+    std::vector<PhotoFigures> figures;
+    for (const std::vector<geometry::View>& views : sets) {
+      figures.push_back(evaluated(views, evaluator));
+    }
+    return figures;
+  }
+
  private:
   static geometry::Mesh obstructions(const PhotoSite& site) {
     geometry::Mesh all = site.target;
@@ -554,6 +565,14 @@ class Planner {
   PhotoPlanResult result_;
 };
 
+void require_surface(const PhotoSite& site) {
+  const double area = surface_area(site.target);
+  if (area > 0.0 && std::isfinite(area)) return;
+  throw Error(
+      ErrorKind::bad_geometry,
+      "the target has no surface; specify a mesh, a city model or an outline with a height");
+}
+
 }  // namespace
 
 const char* to_string(MissingReason reason) {
@@ -579,13 +598,16 @@ void PhotoPlanOptions::validate() const {
 PhotoPlanResult plan_photos(const PhotoPlanOptions& options, const PhotoSite& site,
                             const PhotoPlanRun& run) {
   options.validate();
-  const double area = surface_area(site.target);
-  if (!(area > 0.0) || !std::isfinite(area)) {
-    throw Error(
-        ErrorKind::bad_geometry,
-        "the target has no surface; specify a mesh, a city model or an outline with a height");
-  }
+  require_surface(site);
   return Planner(options, site, run).plan();
+}
+
+std::vector<PhotoFigures> evaluate_photos(const PhotoPlanOptions& options, const PhotoSite& site,
+                                          const PhotoPlanRun& run,
+                                          const std::vector<std::vector<geometry::View>>& sets) {
+  options.validate();
+  require_surface(site);
+  return Planner(options, site, run).evaluate(sets);
 }
 
 }  // namespace skycap::survey::photo

@@ -149,4 +149,10 @@ struct PhotoPlanResult {
 PhotoPlanResult plan_photos(const PhotoPlanOptions& options, const PhotoSite& site,
                             const PhotoPlanRun& run);
 
+/// Returns the figures of each set of photos, such as those of a flight, with the samples by which
+/// plan_photos() evaluates. `attainable` is 0. Throws the errors of plan_photos().
+std::vector<PhotoFigures> evaluate_photos(const PhotoPlanOptions& options, const PhotoSite& site,
+                                          const PhotoPlanRun& run,
+                                          const std::vector<std::vector<geometry::View>>& sets);
+
 }  // namespace skycap::survey::photo

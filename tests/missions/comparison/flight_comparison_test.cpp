@@ -1,10 +1,12 @@
 // A simulated flight with known errors, logged in two formats and compared with its plan.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -12,6 +14,7 @@
 #include "flight/export/trajectory_file.h"
 #include "geometry/angle.h"
 #include "geometry/error.h"
+#include "geometry/surfaces/mesh_distance.h"
 #include "missions/evaluation/survey_scene.h"
 #include "missions/package/package.h"
 #include "missions/package/replanned_mission.h"
@@ -204,6 +207,49 @@ TEST_F(FlightComparisonTest, AssumesCapturesOfTracks) {
   EXPECT_EQ(track["captures"]["missed"], 0);
 }
 
+TEST_F(FlightComparisonTest, NeedsNoPlan) {
+  const std::string log = folder_.write("flown.bin", flight::write_dataflash(flight_, site, pad_));
+  const auto compare_mission = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{
+        "compare", folder_ / "teapot.yaml",     log, "--out", folder_ / "flown",
+        "--cloud", folder_ / "teapot/cloud.ply"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return tests::run_skycap(arguments);
+  };
+  const tests::ProgramRun run = compare_mission({});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Json json = Json::parse(tests::read_content(folder_ / "flown/compare.json"));
+  EXPECT_FALSE(json["has_plan"]);
+  EXPECT_EQ(json["captures"]["other"], captures_.size());
+  EXPECT_NEAR(json["coverage"]["flown"]["coverage_visible"].get<double>(), true_coverage(flight_),
+              0.01);
+  EXPECT_TRUE(json["coverage"]["planned"].is_null());
+
+  const config::MissionSetup setup = package::read_package_summary(folder_ / "teapot", {}).mission;
+  const geometry::MeshDistance model(evaluation::SurveyScene(setup.simulation, {}, 2).model());
+  double nearest = 1e9;
+  for (const FlownState& flown : flight_) {
+    nearest = std::min(nearest, model.distance(flown.state.position));
+  }
+  EXPECT_NEAR(json["clearance"]["model"]["min_distance_m"].get<double>(), nearest, 0.1);
+  EXPECT_GT(json["clearance"]["min_cloud_distance_m"].get<double>(), nearest - 0.1);
+  EXPECT_THAT(run.out, HasSubstr("to the model"));
+  EXPECT_THAT(compare_mission({"--route", folder_ / "teapot/mission.plan"}).err,
+              HasSubstr("--route needs the results folder of a plan"));
+}
+
+TEST_F(FlightComparisonTest, RejectsLogsOfOtherPlaces) {
+  const flight::Site elsewhere{{47.5, 8.2, 480.0}, 48.0};  // 44.5 km farther north
+  const std::string log =
+      folder_.write("flown.bin", flight::write_dataflash(flight_, elsewhere, pad_));
+  for (const std::string& mission : {folder_ / "teapot", folder_ / "teapot.yaml"}) {
+    const tests::ProgramRun run = tests::run_skycap({"compare", mission, log});
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_THAT(run.err, HasSubstr("flown.bin: the flight stays 44."));
+    EXPECT_THAT(run.err, HasSubstr(" km away from the mission"));
+  }
+}
+
 TEST_F(FlightComparisonTest, RejectsOtherFiles) {
   const auto message = [&](const std::vector<std::string>& arguments) {
     return tests::run_skycap(arguments).err;
@@ -213,6 +259,46 @@ TEST_F(FlightComparisonTest, RejectsOtherFiles) {
   EXPECT_THAT(message({"compare", folder_ / "teapot", folder_ / "none.bin"}),
               HasSubstr("none.bin"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "teapot/compare/compare.json"));
+}
+
+/// The flight of a photo mission is cut off after half of its photos.
+TEST(PhotoComparison, StatesCompletenessAndClosesIt) {
+  const tests::TestFolder folder;
+  folder.write("box.obj",
+               "v -4 -3 0\nv 4 -3 0\nv 4 3 0\nv -4 3 0\nv -4 -3 5\nv 4 -3 5\nv 4 3 5\nv -4 3 5\n"
+               "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+  const std::string mission = folder.write(
+      "box.yaml",
+      "sensor: {photo_camera: mavic_3e_wide}\n"
+      "photo: {gsd: 0.0026, patterns: []}\n"
+      "prior: [{file: box.obj, role: target, uncertainty: 0.1}]\n"
+      "limits: {stand_off: 3}\n"
+      "site: {latitude_deg: 51.75, longitude_deg: -1.25, geoid_undulation: 47}\n"
+      "flight: {vehicle: mavic_3e, free_space: assumed, position_error: 0.1, clearance: 2}\n");
+  const tests::ProgramRun plan =
+      tests::run_skycap({"plan", mission, "--out", folder / "box", "--no-report"});
+  ASSERT_EQ(plan.exit_code, 0) << plan.err;
+  const Json summary = Json::parse(tests::read_content(folder / "box/summary.json"));
+  const auto planned = summary["photo"]["figures"]["expected_completeness"].get<double>();
+
+  const std::string track = tests::read_content(folder / "box/mission.csv");
+  const auto compare = [&](const std::string& log) {
+    tests::run_skycap({"compare", folder / "box", folder.write("log.csv", log)});
+    return Json::parse(tests::read_content(folder / "box/compare/compare.json"));
+  };
+  const Json whole = compare(track);
+  EXPECT_EQ(whole["captures"]["missed"], 0);
+  EXPECT_NEAR(whole["photos"]["planned"]["expected_completeness"].get<double>(), planned, 0.002);
+  EXPECT_NEAR(whole["photos"]["flown"]["expected_completeness"].get<double>(), planned, 0.002);
+  EXPECT_TRUE(whole["photos"]["patched"].is_null());
+
+  const Json half = compare(track.substr(0, track.find('\n', track.size() / 2) + 1));
+  const Json& photos = half["photos"];
+  EXPECT_GT(half["captures"]["missed"], 3);
+  EXPECT_EQ(photos["flown"]["photos"].get<int>() + half["captures"]["missed"].get<int>(),
+            photos["planned"]["photos"].get<int>());
+  EXPECT_LT(photos["flown"]["expected_completeness"].get<double>(), planned - 0.1);
+  EXPECT_NEAR(photos["patched"]["expected_completeness"].get<double>(), planned, 0.01);
 }
 
 }  // namespace
