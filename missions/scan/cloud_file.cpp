@@ -90,6 +90,8 @@ void CloudFile::sync() const { geometry::sync_to_disk(path_); }
 void CloudFile::finish() {
   const std::vector<std::uint8_t> header = format_->header(state_);
   put(pages_.closed());
+  std::ifstream points(path_, std::ios::binary);
+  put(format_->trailer(points, state_));
   if (!header.empty()) {
     if (std::fseek(file_.get(), 0, SEEK_SET) != 0) fail();
     put(header);

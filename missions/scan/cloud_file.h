@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <istream>
 #include <memory>
 #include <optional>
 #include <span>
@@ -62,6 +63,12 @@ class CloudFormat {
 
   /// Returns the header of a file with the extent `grown`. Its length does not depend on `grown`.
   virtual std::vector<std::uint8_t> header(const CloudState& grown) const = 0;
+
+  /// Returns the data after the points of a file with the extent `grown`, which the header may
+  /// describe. `file` contains the points.
+  virtual std::string trailer(std::istream& /*file*/, const CloudState& /*grown*/) const {
+    return {};
+  }
 
   /// Returns true if data after the header is written in pages with checksums
   /// (geometry/io/e57/pages.h). The header then consists of complete pages.

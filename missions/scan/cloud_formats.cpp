@@ -129,16 +129,20 @@ CoordinateGrid make_grid(const CloudFormatContext& context) {
   return grid;
 }
 
-const std::array<CloudFormatInfo, 7>& formats() {
+const std::array<CloudFormatInfo, 8>& formats() {
   using Context = CloudFormatContext;
-  static const std::array<CloudFormatInfo, 7> all = {{
+  static const std::array<CloudFormatInfo, 8> all = {{
       {"las", ".las",
        [](const Context& context) {
-         return las_format({6, make_grid(context)});
+         return las_format({6, false, make_grid(context)});
        }},
       {"las7", ".las",
        [](const Context& context) {
-         return las_format({7, make_grid(context)});
+         return las_format({7, false, make_grid(context)});
+       }},
+      {"laz", ".laz",
+       [](const Context& context) {
+         return las_format({6, true, make_grid(context)});
        }},
       {"e57", ".e57",
        [](const Context& context) { return e57_format(make_grid(context), context.sensor_name); }},

@@ -4,6 +4,8 @@
 
 #include "geometry/angle.h"
 #include "geometry/error.h"
+#include "geometry/io/las/chunk_encoder.h"
+#include "geometry/io/las/las_file_writer.h"
 #include "geometry/io/las/las_writer.h"
 
 namespace skycap::missions::scan {
@@ -19,13 +21,30 @@ class LasFormat final : public CloudFormat {
   std::vector<std::uint8_t> header(const CloudState& grown) const override {
     const CloudTotals& totals = grown.totals;
     const CoordinateGrid& grid = config_.grid;
-    return las::make_header({config_.point_format, grid.crs_wkt, grid.scale, grid.offset,
-                             totals.points, totals.points_by_return, totals.bounds});
+    las::WrittenFile file;
+    file.point_format = config_.point_format;
+    file.is_compressed = config_.is_compressed;
+    file.records = {las::wkt_record(grid.crs_wkt)};
+    file.scale = Eigen::Vector3d::Constant(grid.scale);
+    file.offset = grid.offset;
+    file.points = totals.points;
+    file.points_by_return = totals.points_by_return;
+    file.bounds = totals.bounds;
+    if (!config_.is_compressed) return las::make_header(file);
+    file.records.push_back(las::compression_record(config_.point_format, point_size_));
+    std::vector<std::uint8_t> bytes = las::make_header(file);
+    // The chunk table follows the points.
+    bytes.resize(bytes.size() + sizeof(std::uint64_t));
+    geometry::put_value(bytes.data(), bytes.size() - sizeof(std::uint64_t), grown.bytes);
+    return bytes;
   }
+  std::string trailer(std::istream& file, const CloudState& grown) const override;
   void encode(const sim::LidarReturns& returns, ReturnPosition position,
               CloudChunk& chunk) const override;
 
  private:
+  void compress(CloudChunk& chunk) const;
+
   /// `units` converts a point to integer steps relative to the offset.
   template <typename Units>
   void encode_points(const sim::LidarReturns& returns, const std::vector<Eigen::Vector3f>& points,
@@ -45,6 +64,27 @@ void LasFormat::encode(const sim::LidarReturns& returns, ReturnPosition position
   chunk.totals.bounds = encode_on_grid(config_.grid, returns, points, [&](const auto& units) {
     encode_points(returns, points, units, chunk);
   });
+  if (config_.is_compressed) compress(chunk);
+}
+
+void LasFormat::compress(CloudChunk& chunk) const {
+  const auto encoder = las::make_chunk_encoder(config_.point_format, point_size_);
+  const auto* const points = reinterpret_cast<const char*>(chunk.bytes.data());
+  std::string compressed;
+  for (std::size_t begin = 0; begin < chunk.bytes.size(); begin += point_size_) {
+    encoder->add(points + begin);
+    if (encoder->points() == las::chunk_points) compressed += encoder->finish();
+  }
+  compressed += encoder->finish();
+  chunk.bytes.assign(compressed.begin(), compressed.end());
+}
+
+// The table is created from the points, because a scan may be resumed or joined from pieces.
+std::string LasFormat::trailer(std::istream& file, const CloudState& grown) const {
+  if (!config_.is_compressed) return {};
+  const std::uint64_t begin = header({}).size();
+  return las::chunk_table(
+      las::find_chunks(file, begin, grown.bytes, config_.point_format, point_size_), true);
 }
 
 template <typename Units>

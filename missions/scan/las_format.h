@@ -1,4 +1,5 @@
-/// Settings of LAS 1.4 files (ASPRS specification R15) with point formats 6 and 7.
+/// Settings of LAS 1.4 files (ASPRS specification R15) with point formats 6 and 7, also compressed
+/// (LAZ).
 #pragma once
 
 #include <memory>
@@ -10,6 +11,7 @@ namespace skycap::missions::scan {
 
 struct LasConfig {
   int point_format = 6;  ///< Format 7 adds a colour: the intensity as grey.
+  bool is_compressed = false;  ///< LAZ, with a chunk for each piece of the scan.
   CoordinateGrid grid = {};
 
   /// Throws Error{bad_config} naming the first field outside its valid interval.

@@ -24,9 +24,10 @@ class ChunkDecoder {
 /// Creates a decoder of all fields of the point formats 0 to 3.
 std::unique_ptr<ChunkDecoder> make_pointwise_decoder(int format, std::size_t point_size);
 
-/// Creates a decoder of the point formats 6 to 8 with item version 3 or 4. It decodes position,
-/// return numbers, class, flags, channel and colour (not infrared). Other bytes of a point are not
-/// modified.
-std::unique_ptr<ChunkDecoder> make_layered_decoder(int format, int version, std::size_t point_size);
+/// Creates a decoder of the point formats 6 to 8 with item version 3 or 4. Unless `decodes_all`, it
+/// decodes only position, return numbers, class, flags, channel and colour (not infrared). Other
+/// bytes of a point are then not modified.
+std::unique_ptr<ChunkDecoder> make_layered_decoder(int format, int version, std::size_t point_size,
+                                                   bool decodes_all);
 
 }  // namespace skycap::geometry::las

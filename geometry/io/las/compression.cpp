@@ -33,8 +33,8 @@ std::vector<Item> standard_items(int format, std::size_t point_size) {
 }
 
 // Byte offsets in the record and in its items.
-constexpr std::size_t compressor_offset = 0, coder_offset = 2, chunk_size_offset = 12,
-                      item_count_offset = 32, items_offset = 34, item_size = 6;
+constexpr std::size_t compressor_offset = 0, coder_offset = 2, software_version_offset = 4,
+                      chunk_size_offset = 12, unused_offset = 16, item_count_offset = 32, items_offset = 34, item_size = 6;
 
 constexpr std::string_view damaged = "has a damaged LAZ record: ";
 
@@ -74,6 +74,28 @@ Compression parse_compression(std::string_view record, int format, std::size_t p
   const auto chunk_size = value_at<std::uint32_t>(record.data(), chunk_size_offset);
   if (chunk_size == 0) throw_bad_file(std::string(damaged) + "its chunk size is zero");
   return {.version = version, .chunk_size = chunk_size};
+}
+
+std::string write_compression(const Compression& compression, int format, std::size_t point_size) {
+  const std::vector<Item> items = standard_items(format, point_size);
+  std::string record(items_offset + item_size * items.size(), '\0');
+  const auto put = [&](std::size_t offset, auto value) { put_value(record.data(), offset, value); };
+  const auto put_number = [&](std::size_t offset, int value) {
+    put(offset, static_cast<std::uint16_t>(value));
+  };
+  put_number(compressor_offset, 3);
+  put_number(software_version_offset, 3 | 4 << 8);  // LASzip 3.4, whose format this is
+  put(chunk_size_offset, compression.chunk_size);
+  put(unused_offset, ~std::uint64_t{0});
+  put(unused_offset + 8, ~std::uint64_t{0});
+  put_number(item_count_offset, static_cast<int>(items.size()));
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const std::size_t offset = items_offset + item_size * i;
+    put(offset, items[i].type);
+    put(offset + 2, items[i].size);
+    put_number(offset + 4, compression.version);
+  }
+  return record;
 }
 
 ChunkTable::ChunkTable(const ReadBytes& read, std::uint64_t file_size, std::uint64_t first_point,

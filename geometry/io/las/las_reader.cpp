@@ -12,8 +12,6 @@
 namespace skycap::geometry {
 namespace {
 
-constexpr int compressed_bit = 0x80;  // flag in the point format
-
 /// Throws Error{bad_file} unless the file is a supported LAS file with the header size of its
 /// version.
 void require_readable(const std::filesystem::path& path, std::string_view beginning) {
@@ -23,8 +21,8 @@ void require_readable(const std::filesystem::path& path, std::string_view beginn
   const int major = value_at<std::uint8_t>(beginning.data(), las::header::major),
             minor = value_at<std::uint8_t>(beginning.data(), las::header::minor);
   const int kind = value_at<std::uint8_t>(beginning.data(), las::header::point_format);
-  const bool is_compressed = (kind & compressed_bit) != 0;
-  const int format = is_compressed ? kind - compressed_bit : kind;
+  const bool is_compressed = (kind & las::compressed_bit) != 0;
+  const int format = is_compressed ? kind - las::compressed_bit : kind;
   const bool has_waveforms = format == 4 || format == 5 || format == 9 || format == 10;
   if (major != 1 || minor > 4 || format > 10 || (is_compressed && has_waveforms)) {
     fail_cloud(path,
@@ -43,8 +41,9 @@ LasHeader parse_header_fields(std::string_view beginning) {
   LasHeader header;
   header.minor = value_at<std::uint8_t>(bytes, las::header::minor);
   const int kind = value_at<std::uint8_t>(bytes, las::header::point_format);
-  header.is_compressed = (kind & compressed_bit) != 0;
-  header.format = header.is_compressed ? kind - compressed_bit : kind;
+  header.is_compressed = (kind & las::compressed_bit) != 0;
+  header.format = header.is_compressed ? kind - las::compressed_bit : kind;
+  header.has_adjusted_time = (value_at<std::uint16_t>(bytes, las::header::encoding) & 1) != 0;
   header.header_size = value_at<std::uint16_t>(bytes, las::header::size);
   header.first_point = value_at<std::uint32_t>(bytes, las::header::first_point);
   header.records = value_at<std::uint32_t>(bytes, las::header::records);
@@ -157,10 +156,10 @@ void read_geo_keys(std::string_view directory, LasReferenceSystem& system) {
 
 bool LasHeader::has_colours() const { return colour_offset(*this) != 0; }
 
-LasReader::LasReader(std::filesystem::path path)
+LasReader::LasReader(std::filesystem::path path, LasFields fields)
     : file_(std::make_unique<SeekableFile>(std::move(path))),
       header_(parse_header(file_->path(), bytes(0, las::header::end), file_->size())) {
-  if (header_.is_compressed) open_compressed();
+  if (header_.is_compressed) open_compressed(fields);
 }
 
 std::string LasReader::bytes(std::uint64_t offset, std::uint64_t count) {
@@ -195,16 +194,31 @@ void LasReader::visit_extended_records(const RecordCallback& callback) {
   }
 }
 
-LasReferenceSystem LasReader::reference_system() {
-  LasReferenceSystem system;
+std::vector<LasRecord> LasReader::kept_records() {
+  std::vector<LasRecord> records;
   const auto callback = [&](std::string_view user, int id, std::string_view content) {
-    if (user != las::record::projection && user != "liblas") return true;
-    if (id == las::record::wkt && system.wkt.empty()) system.wkt = trim_at_null(content);
-    if (id == las::record::geo_keys) read_geo_keys(content, system);
+    const bool is_projection = user == las::record::projection || user == "liblas";
+    const bool is_extra_bytes =
+        user == las::record::specification && id == las::record::extra_bytes;
+    if (is_projection || is_extra_bytes) {
+      records.push_back({is_projection, static_cast<std::uint16_t>(id), std::string(content)});
+    }
     return true;
   };
   visit_records(callback);
   visit_extended_records(callback);
+  return records;
+}
+
+LasReferenceSystem LasReader::reference_system() {
+  LasReferenceSystem system;
+  for (const LasRecord& record : kept_records()) {
+    if (!record.is_projection) continue;
+    if (record.id == las::record::wkt && system.wkt.empty()) {
+      system.wkt = trim_at_null(record.content);
+    }
+    if (record.id == las::record::geo_keys) read_geo_keys(record.content, system);
+  }
   return system;
 }
 
@@ -218,9 +232,10 @@ std::string LasReader::compression_record() {
   return *record;
 }
 
-void LasReader::open_compressed() {
+void LasReader::open_compressed(LasFields fields) {
   const std::string record = compression_record();
-  const las::StoredPoints points{header_.format, header_.point_size, header_.first_point};
+  const las::StoredPoints points{header_.format, header_.point_size, header_.first_point,
+                                 fields == LasFields::all};
   const auto read = [file = file_.get()](std::uint64_t offset, std::uint64_t count) {
     return file->bytes(offset, count);
   };
@@ -243,6 +258,23 @@ bool LasReader::next(LasPoints& points, std::size_t max) {
       const char* const point = some.data() + i * header_.point_size;
       if (!is_withheld(header_, point)) add_point(header_, point, points);
     }
+  }
+  points_read_ += count;
+  return count > 0;
+}
+
+bool LasReader::next_records(std::string& records, std::size_t max) {
+  const std::uint64_t count = std::min<std::uint64_t>(max, header_.points - points_read_);
+  if (compressed_ == nullptr) {
+    records =
+        bytes(header_.first_point + points_read_ * header_.point_size, count * header_.point_size);
+  } else {
+    records.resize(count * header_.point_size);
+    file_->with_name([&] {
+      for (std::uint64_t i = 0; i < count; ++i) {
+        compressed_->next(records.data() + i * header_.point_size);
+      }
+    });
   }
   points_read_ += count;
   return count > 0;

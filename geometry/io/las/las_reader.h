@@ -24,7 +24,8 @@ namespace skycap::geometry {
 struct LasHeader {
   int minor = 0;               ///< minor version: 1.minor
   int format = 0;              ///< point format
-  bool is_compressed = false;  ///< LAZ or COPC
+  bool is_compressed = false;      ///< LAZ or COPC
+  bool has_adjusted_time = false;  ///< times are GPS times minus 1e9 s, not seconds of the week
   std::uint64_t points = 0;
   std::uint64_t header_size = 0, first_point = 0, point_size = 0;  ///< [bytes]
   std::uint32_t records = 0;  ///< number of variable length records after the header
@@ -51,11 +52,24 @@ struct LasReferenceSystem {
   bool is_user_defined = false;                     ///< defined by parameters, which are not read
 };
 
+/// Record of the reference system or of the specification (additional bytes).
+struct LasRecord {
+  bool is_projection = true;  ///< otherwise it belongs to the specification
+  std::uint16_t id = 0;
+  std::string content;
+};
+
+/// Compressed fields of a point that a reader decodes.
+enum class LasFields {
+  needed,  ///< fields of LasPoints
+  all,
+};
+
 class LasReader {
  public:
   /// Throws Error{bad_file} if the file cannot be read, if its header is invalid or its compression
   /// unsupported. The same applies if it declares more points than fit into the file.
-  explicit LasReader(std::filesystem::path path);
+  explicit LasReader(std::filesystem::path path, LasFields fields = LasFields::needed);
 
   const LasHeader& header() const { return header_; }
 
@@ -63,6 +77,15 @@ class LasReader {
   /// ignored, so that the result may be empty. Returns false at the end of the file. Throws
   /// Error{bad_file} if the file cannot be read or its compressed data is damaged.
   bool next(LasPoints& points, std::size_t max = 1 << 16);
+
+  /// Replaces `records` with the next points in the uncompressed format of the file, including
+  /// withheld points. Returns false at the end of the file. Requires LasFields::all. Throws as
+  /// next().
+  bool next_records(std::string& records, std::size_t max = 1 << 16);
+
+  /// Returns the records of the reference system and of additional bytes, before and after the
+  /// points. Throws Error{bad_file} if the file cannot be read.
+  std::vector<LasRecord> kept_records();
 
   /// Reads the reference system from the records before and after the points. The first WKT takes
   /// precedence. Throws Error{bad_file} if the file cannot be read.
@@ -77,7 +100,7 @@ class LasReader {
   void visit_records(const RecordCallback& callback);
   void visit_extended_records(const RecordCallback& callback);
   std::string compression_record();
-  void open_compressed();
+  void open_compressed(LasFields fields);
   void decompress(LasPoints& points, std::uint64_t count);
 
   std::unique_ptr<SeekableFile>

@@ -8,6 +8,8 @@
 
 namespace skycap::geometry::las {
 
+inline constexpr int compressed_bit = 0x80;  ///< flag in the point format of the header
+
 /// Offsets in the public header block. Vectors and boxes are in the order x, y, z.
 namespace header {
 inline constexpr std::size_t signature = 0, encoding = 6, major = 24, minor = 25, system = 26,
@@ -27,6 +29,8 @@ inline constexpr std::size_t extended_end = 60;  // the length field has 8 bytes
 inline constexpr std::size_t user_size = 16;
 inline constexpr const char* projection = "LASF_Projection";  // user ID of the record IDs below
 inline constexpr std::uint16_t wkt = 2112, geo_keys = 34735;
+inline constexpr const char* specification = "LASF_Spec";
+inline constexpr std::uint16_t extra_bytes = 4;
 }  // namespace record
 
 /// Offsets in a point of format 6 to 10.

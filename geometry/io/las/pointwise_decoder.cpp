@@ -8,10 +8,10 @@
 
 #include "geometry/byte_values.h"
 #include "geometry/io/las/chunk_decoder.h"
-#include "geometry/io/las/colour_decoder.h"
-#include "geometry/io/las/position_decoder.h"
+#include "geometry/io/las/colour_coder.h"
+#include "geometry/io/las/position_coder.h"
 #include "geometry/io/las/return_contexts.h"
-#include "geometry/io/las/time_decoder.h"
+#include "geometry/io/las/time_coder.h"
 
 namespace skycap::geometry::las {
 namespace {
@@ -44,8 +44,8 @@ class Point10Decoder {
   std::vector<SymbolModel> classes_ = returns_,
                            user_data_ = returns_;  // by the value of the last point
   std::array<SymbolModel, 2> scan_angles_;         // by scan direction
-  IntegerDecoder intensity_{16, 4}, source_{16, 1};
-  PositionDecoder position_;
+  IntegerCoder intensity_{16, 4}, source_{16, 1};
+  PositionCoder position_;
   std::array<std::uint16_t, 16> intensities_{};  // last intensity per kind of return
   std::array<RunningMedian, 16> x_steps_{}, y_steps_{};
   std::array<std::int32_t, 8> heights_{};  // last height per return level
@@ -101,11 +101,11 @@ void Point10Decoder::read_attributes(ArithmeticDecoder& decoder, std::uint32_t c
 void Point10Decoder::read_position(ArithmeticDecoder& decoder) {
   const std::size_t context = return_context();
   const bool is_single = num_returns() == 1;
-  const auto step = position_.read_step(decoder, x_steps_[context], y_steps_[context], is_single);
+  const auto step = position_.code_step(decoder, x_steps_[context], y_steps_[context], is_single);
   last_.x = wrapped_sum(last_.x, step.x);
   last_.y = wrapped_sum(last_.y, step.y);
   std::int32_t& height = heights_[return_level(num_returns(), return_number())];
-  last_.z = height = position_.read_height(decoder, height, is_single);
+  last_.z = height = position_.code_height(decoder, height, is_single);
 }
 
 class PointwiseDecoder : public ChunkDecoder {
@@ -128,8 +128,8 @@ class PointwiseDecoder : public ChunkDecoder {
   ByteWindow compressed_;
   std::optional<ArithmeticDecoder> decoder_;
   Point10Decoder points_;
-  TimeDecoder times_;
-  ColourDecoder colours_;
+  TimeCoder times_{false};
+  ColourCoder colours_;
   std::vector<SymbolModel> extra_;
 };
 
@@ -147,10 +147,10 @@ void PointwiseDecoder::begin(ByteWindow chunk, char* point) {
 void PointwiseDecoder::next(char* point) {
   if (!decoder_) decoder_.emplace(std::move(compressed_));  // a chunk of one point ends here
   put_value(last_.data(), 0, points_.read(*decoder_));
-  if (has_time_) put_value(last_.data(), sizeof(Point10), times_.read(*decoder_));
+  if (has_time_) put_value(last_.data(), sizeof(Point10), times_.code(*decoder_));
   if (has_colour_) {
     const auto colour = value_at<Colour>(last_.data(), colour_offset());
-    put_value(last_.data(), colour_offset(), colours_.read(*decoder_, colour));
+    put_value(last_.data(), colour_offset(), colours_.code(*decoder_, colour));
   }
   for (std::size_t i = 0; i < extra_.size(); ++i) {
     char& byte = last_[extra_offset() + i];

@@ -1,4 +1,4 @@
-#include "geometry/io/las/arithmetic_decoder.h"
+#include "geometry/io/las/arithmetic_coder.h"
 
 #include <algorithm>
 #include <utility>
@@ -16,9 +16,9 @@ constexpr std::uint32_t max_count_bits = 1 << 13;
 
 }  // namespace
 
-void SymbolModel::begin() {
+void SymbolModel::begin(bool has_table) {
   if (counts_.empty()) {
-    if (symbols_ > 16) {
+    if (has_table && symbols_ > 16) {
       std::uint32_t bits = 3;
       while (symbols_ > 1U << (bits + 2)) ++bits;
       table_shift_ = 15 - bits;
@@ -82,7 +82,7 @@ ArithmeticDecoder::ArithmeticDecoder(ByteWindow bytes) : bytes_(std::move(bytes)
   if (value_ >= length_) reject_value();
 }
 
-std::uint32_t ArithmeticDecoder::bits(std::uint32_t count) {
+std::uint32_t ArithmeticDecoder::bits(std::uint32_t count, std::uint32_t /*value*/) {
   if (count <= 19) return few_bits(count);
   const std::uint32_t low = few_bits(16);
   return few_bits(count - 16) << 16 | low;
@@ -94,6 +94,43 @@ std::uint32_t ArithmeticDecoder::few_bits(std::uint32_t count) {
   if (value >> count != 0) reject_value();
   narrow(value * unit, unit);
   return value;
+}
+
+std::uint32_t ArithmeticEncoder::bits(std::uint32_t count, std::uint32_t value) {
+  if (count <= 19) {
+    few_bits(count, value);
+  } else {
+    few_bits(16, value & 0xFFFF);
+    few_bits(count - 16, value >> 16);
+  }
+  return value;
+}
+
+void ArithmeticEncoder::few_bits(std::uint32_t count, std::uint32_t value) {
+  const std::uint32_t unit = length_ >> count;
+  narrow(value * unit, unit);
+}
+
+void ArithmeticEncoder::carry() {
+  auto byte = bytes_.rbegin();
+  for (; static_cast<std::uint8_t>(*byte) == 0xFF; ++byte) *byte = 0;
+  ++*byte;
+}
+
+std::string ArithmeticEncoder::finish() {
+  constexpr std::uint32_t min_length = 1 << 24;
+  // The shortest number that identifies the interval, then zeros that decoders read in advance.
+  const bool is_wide = length_ > 2 * min_length;
+  if (is_wide) {
+    narrow(min_length, min_length >> 1);
+  } else {
+    narrow(min_length >> 1, min_length >> 9);
+  }
+  bytes_.append(is_wide ? 3 : 2, '\0');
+  std::string bytes;
+  bytes.swap(bytes_);
+  *this = {};
+  return bytes;
 }
 
 }  // namespace skycap::geometry::las
