@@ -480,9 +480,9 @@ void LayeredCoder<Coder>::code_extras(Layers<Coder>& layers, const Extras& extra
       last.colour = models.colour.code(*layers[Layer::colours], last.colour, extras.colour);
     }
     if (point != nullptr) put_value(point, point::colour, last.colour);
-    if (layout_.has_infrared && layers[Layer::infrared]) {
-      last.infrared =
-          code_infrared(*layers[Layer::infrared], models, last.infrared, extras.infrared);
+    if (layout_.has_infrared) {
+      auto& coder = layers[Layer::infrared];
+      if (coder) last.infrared = code_infrared(*coder, models, last.infrared, extras.infrared);
       if (point != nullptr) put_value(point, infrared_offset, last.infrared);
     }
   }

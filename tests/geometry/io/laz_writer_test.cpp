@@ -323,6 +323,31 @@ TEST_P(ConvertedLas, KeepsPointsOfFormats6To8ByteByByte) {
   EXPECT_TRUE(read_records(folder.path() / "a.laz") == read_records(from));
 }
 
+// LASzip 3.5 has written these files with chunks of several sizes.
+TEST(LazWriter, WritesSameChunksAsReferenceCompressor) {
+  for (const std::string name : {"format6", "format7", "format8"}) {
+    SCOPED_TRACE(name);
+    const std::string path = std::string(LAZ_FILES) + "/" + name + ".laz";
+    const std::string bytes = read_all(path), records = read_records(path);
+    const LasHeader header = LasReader(path).header();
+    const std::size_t begin = header.first_point + 8;
+    const auto end = value_at<std::uint64_t>(bytes.data(), header.first_point);
+    std::ifstream stream(path, std::ios::binary);
+    const auto encoder = make_chunk_encoder(header.format, header.point_size);
+    std::string chunks;
+    std::size_t point = 0;
+    for (const WrittenChunk& chunk :
+         find_chunks(stream, begin, end, header.format, header.point_size)) {
+      for (std::uint32_t i = 0; i < chunk.points; ++i) {
+        encoder->add(records.data() + header.point_size * point++);
+      }
+      chunks += encoder->finish();
+    }
+    EXPECT_EQ(point, header.points);
+    EXPECT_TRUE(chunks == bytes.substr(begin, end - begin));
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Files, ConvertedLas,
                          testing::Values("format0", "format1", "format2", "format3", "format6",
                                          "format7", "format8", "various_chunks"),
