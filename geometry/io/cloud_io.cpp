@@ -217,6 +217,19 @@ void fail_without_points(const fs::path& path, std::size_t skipped) {
                                       " points are NaN or infinite");
 }
 
+void require_cloud_name(const fs::path& path) {
+  const std::string extension = lower_extension(path);
+  if (extension == ".ply" || extension == ".pcd" || piecewise_reader(extension) ||
+      is_text_cloud(path)) {
+    return;
+  }
+  fail_cloud(path,
+             "the name of a cloud file must end in .ply, .pcd, .las, .laz, .e57, .xyz, .txt, "
+             ".asc, .pts or .csv, optionally followed by .gz");
+}
+
+std::string whole_cloud_file(const fs::path& path) { return whole_file(path); }
+
 AttributedCloud read_cloud(const fs::path& path) {
   const std::string extension = lower_extension(path);
   const auto piecewise = piecewise_reader(extension);
@@ -224,11 +237,7 @@ AttributedCloud read_cloud(const fs::path& path) {
                       : extension == ".pcd" ? parse_pcd_cloud
                       : is_text_cloud(path) ? parse_text_cloud
                                             : nullptr;
-  if (parser == nullptr && !piecewise) {
-    fail_cloud(path,
-               "the name of a cloud file must end in .ply, .pcd, .las, .laz, .e57, .xyz, .txt, "
-               ".asc, .pts or .csv, optionally followed by .gz");
-  }
+  if (parser == nullptr && !piecewise) require_cloud_name(path);
   AttributedCloud cloud = piecewise ? piecewise->cloud(path) : parser(path, whole_file(path));
   if (cloud.positions.empty()) fail_without_points(path, cloud.skipped);
   return cloud;

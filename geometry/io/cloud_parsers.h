@@ -66,6 +66,30 @@ using TextChunkCallback = std::function<void(std::span<const Eigen::Vector3f>, s
 std::size_t read_text_cloud(const std::filesystem::path& path, std::string_view text,
                             const TextChunkCallback& callback);
 
+/// Receives the names of the fields of a file and returns the indices of those to be read.
+using SelectFields = std::function<std::vector<std::size_t>(std::span<const std::string> names)>;
+
+/// Receives the selected fields of a point.
+using FieldValues = std::function<void(std::span<const double> values)>;
+
+/// Reads fields of a PCD file. Packed colours ("rgb", "rgba") are passed as an integer.
+void read_pcd_fields(const std::filesystem::path& path, std::string_view bytes,
+                     const SelectFields& select, const FieldValues& callback);
+
+struct TextColumns {
+  std::size_t unnamed = 0;  ///< number of columns after the coordinates without names
+};
+
+/// Reads x, y and z and the selected columns of a text file.
+TextColumns read_text_fields(const std::filesystem::path& path, std::string_view text,
+                             const SelectFields& select, const FieldValues& callback);
+
+/// Returns the decompressed bytes of a file that is not read in pieces; text in UTF-8.
+std::string whole_cloud_file(const std::filesystem::path& path);
+
+/// Throws Error{bad_file} unless the extension is that of a cloud.
+void require_cloud_name(const std::filesystem::path& path);
+
 /// Throws Error{bad_file} for a file without points, or in which all points were skipped.
 [[noreturn]] void fail_without_points(const std::filesystem::path& path, std::size_t skipped);
 

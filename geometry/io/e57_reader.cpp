@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "geometry/io/e57/layout.h"
@@ -14,16 +15,18 @@ using Names = std::array<const char*, 3>;
 constexpr Names cartesian{"cartesianX", "cartesianY", "cartesianZ"};
 constexpr Names spherical{"sphericalRange", "sphericalAzimuth", "sphericalElevation"};
 constexpr Names colours{"colorRed", "colorGreen", "colorBlue"};
+constexpr std::array<const char*, 1> intensity{"intensity"}, time_stamp{"timeStamp"};
+constexpr std::array<const char*, 2> returns{"returnIndex", "returnCount"};
 constexpr Names normals{"nor:normalX", "nor:normalY", "nor:normalZ"};  // extension E57_NOR
 
-bool has(const e57::ScanDescription& scan, const Names& names) {
+bool has(const e57::ScanDescription& scan, std::span<const char* const> names) {
   return std::ranges::all_of(names, [&](const char* name) {
     const auto field = scan.field(name);
     return field && scan.fields[*field].coding != e57::Coding::text;
   });
 }
 
-bool all_have(const std::vector<e57::ScanDescription>& scans, const Names& names) {
+bool all_have(const std::vector<e57::ScanDescription>& scans, std::span<const char* const> names) {
   return std::ranges::all_of(scans, [&](const auto& scan) { return has(scan, names); });
 }
 
@@ -75,6 +78,9 @@ E57Reader::E57Reader(std::filesystem::path path)
     description_ = read_description(*pages_, header);
     has_colours_ = all_have(description_.scans, colours);
     has_normals_ = all_have(description_.scans, normals);
+    has_intensities_ = all_have(description_.scans, intensity);
+    has_times_ = all_have(description_.scans, time_stamp);
+    has_returns_ = all_have(description_.scans, returns);
     for (const e57::ScanDescription& scan : description_.scans) find_field_indices(scan);
   });
 }
@@ -93,13 +99,16 @@ E57Reader::FieldIndices E57Reader::find_field_indices(const e57::ScanDescription
         "has a scan whose points have neither cartesianX, Y and Z nor sphericalRange, Azimuth and "
         "Elevation");
   }
-  const auto add = [&](const Names& names) {
+  const auto add = [&](std::span<const char* const> names) {
     for (const char* name : names) field_indices.fields.push_back(*scan.field(name));
     return field_indices.fields.size() - names.size();
   };
   add(field_indices.is_spherical ? spherical : cartesian);
   if (has_colours_) field_indices.colours = add(colours);
   if (has_normals_) field_indices.normals = add(normals);
+  if (has_intensities_) field_indices.intensity = add(intensity);
+  if (has_times_) field_indices.time = add(time_stamp);
+  if (has_returns_) field_indices.returns = add(returns);
   const auto state =
       scan.field(field_indices.is_spherical ? "sphericalInvalidState" : "cartesianInvalidState");
   if (state) {
@@ -113,6 +122,9 @@ bool E57Reader::next(E57Points& points, std::size_t max) {
   points.positions.clear();
   points.normals.clear();
   points.colours.clear();
+  points.intensities.clear();
+  points.times.clear();
+  points.returns.clear();
   return file_->with_name([&] {
     while (true) {
       const std::size_t count = records_ ? records_->next(max) : 0;
@@ -156,6 +168,17 @@ void E57Reader::add_points(std::size_t count, E57Points& points) {
     if (has_normals_) {
       points.normals.push_back(
           (scan.file_from_scan.linear() * three(field_indices_.normals, i)).cast<float>());
+    }
+    if (has_intensities_) {
+      points.intensities.push_back(static_cast<float>(values[field_indices_.intensity][i]));
+    }
+    if (has_times_) points.times.push_back(values[field_indices_.time][i]);
+    if (has_returns_) {
+      const auto byte = [&](std::size_t field, double shift) {
+        return static_cast<std::uint8_t>(std::clamp(values[field][i] + shift, 0.0, 255.0));
+      };
+      points.returns.push_back(
+          {byte(field_indices_.returns, 1.0), byte(field_indices_.returns + 1, 0.0)});
     }
     if (!has_colours_) continue;
     auto& colour = points.colours.emplace_back();

@@ -27,7 +27,10 @@ struct E57Points {
   std::vector<Eigen::Vector3d> positions;
   std::vector<Eigen::Vector3f> normals;  ///< one per point if all scans have them, otherwise empty
   std::vector<std::array<std::uint8_t, 3>>
-      colours;  ///< one per point if all scans have them, otherwise empty
+      colours;                     ///< one per point if all scans have them, otherwise empty
+  std::vector<float> intensities;  ///< as colours
+  std::vector<double> times;       ///< as colours [s]
+  std::vector<std::array<std::uint8_t, 2>> returns;  ///< as colours: number, from 1, and count
 };
 
 /// Reads cartesianX, Y, Z, or sphericalRange, Azimuth, Elevation if there are no Cartesian
@@ -57,7 +60,8 @@ class E57Reader {
   struct FieldIndices {
     bool is_spherical = false;
     std::vector<std::size_t> fields;  ///< three of the position, then optional fields
-    std::size_t state = 0, colours = 0, normals = 0;  ///< indices in `fields`; 0 if absent
+    std::size_t state = 0, colours = 0, normals = 0, intensity = 0, time = 0,
+                returns = 0;  ///< indices in `fields`; 0 if absent
   };
   FieldIndices find_field_indices(const e57::ScanDescription& scan) const;
   void add_points(std::size_t count, E57Points& points);
@@ -66,7 +70,8 @@ class E57Reader {
       file_;  ///< on the heap, so that its address stays the same when the reader is moved
   std::unique_ptr<e57::Pages> pages_;
   e57::Description description_;
-  bool has_colours_ = false, has_normals_ = false;
+  bool has_colours_ = false, has_normals_ = false, has_intensities_ = false, has_times_ = false,
+       has_returns_ = false;
   std::size_t next_scan_ = 0, skipped_ = 0;
   FieldIndices field_indices_;
   std::optional<e57::RecordStream> records_;

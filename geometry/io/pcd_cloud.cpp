@@ -182,24 +182,27 @@ double number_at(std::string_view bytes, std::size_t offset, const PcdField& fie
   }
 }
 
-using Values = std::array<double, 6>;  // x y z and normal
+/// Returns the integer whose bits are a real number in files of PCL, or the integer itself.
+double packed_colour(double number, const PcdField& field) {
+  if (field.type != 'F') return number;
+  return std::bit_cast<std::uint32_t>(static_cast<float>(number));
+}
 
-class Points {
+class FieldReader {
  public:
-  Points(const fs::path& path, const PcdHeader& header) : path_(path), header_(header) {
-    constexpr std::array<std::string_view, 6> names{"x",        "y",        "z",
-                                                    "normal_x", "normal_y", "normal_z"};
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      const auto field = std::ranges::find(header.fields, names[i], &PcdField::name);
-      if (field != header.fields.end() && field->count == 1) fields_[i] = *field;
+  FieldReader(const fs::path& path, const PcdHeader& header, const SelectFields& select,
+              const FieldValues& callback)
+      : path_(path), header_(header), callback_(callback) {
+    std::vector<std::string> names;
+    std::vector<std::size_t> indices;
+    for (std::size_t i = 0; i < header.fields.size(); ++i) {
+      if (header.fields[i].count != 1) continue;
+      names.push_back(header.fields[i].name);
+      indices.push_back(i);
     }
-    if (!fields_[0] || !fields_[1] || !fields_[2]) {
-      fail_cloud(path, "must have the fields x, y and z");
-    }
-    has_normals_ = fields_[3] && fields_[4] && fields_[5];
+    for (const std::size_t i : select(names)) fields_.push_back(header.fields[indices[i]]);
+    values_.resize(fields_.size());
   }
-
-  AttributedCloud take() { return std::move(cloud_); }
 
   void read_text(const std::string& name, std::string_view text) {
     TextScanner scanner(name, text, header_.first_line);
@@ -207,14 +210,13 @@ class Points {
     do {
       const std::vector<std::string> words = split_line(scanner);
       if (words.empty()) continue;
-      Values values{};
-      for (std::size_t i = 0; i < used(); ++i) {
-        const std::size_t column = fields_[i]->column;
-        values[i] = scanner.number<double>(
+      for (std::size_t i = 0; i < fields_.size(); ++i) {
+        const std::size_t column = fields_[i].column;
+        values_[i] = scanner.number<double>(
             column < words.size() ? std::optional<std::string_view>(words[column]) : std::nullopt,
-            fields_[i]->name);
+            fields_[i].name);
       }
-      add(point++, values);
+      add(point++);
       require_few_points(path_, point);
     } while (scanner.next_line());
     require(point);
@@ -224,66 +226,92 @@ class Points {
   void read_binary(std::string_view bytes, bool is_by_field) {
     require(bytes.size() / std::max<std::size_t>(1, header_.point_size));
     require_few_points(path_, header_.points);
-    cloud_.positions.reserve(header_.points);
     for (std::size_t point = 0; point < header_.points; ++point) {
-      Values values{};
-      for (std::size_t i = 0; i < used(); ++i) {
-        const PcdField& field = *fields_[i];
-        values[i] = number_at(bytes,
-                              is_by_field ? field.before * header_.points + point * field.size
-                                          : point * header_.point_size + field.before,
-                              field);
+      for (std::size_t i = 0; i < fields_.size(); ++i) {
+        const PcdField& field = fields_[i];
+        values_[i] = number_at(bytes,
+                               is_by_field ? field.before * header_.points + point * field.size
+                                           : point * header_.point_size + field.before,
+                               field);
       }
-      add(point, values);
+      add(point);
     }
   }
 
  private:
-  std::size_t used() const { return has_normals_ ? 6 : 3; }
-
   void require(std::size_t points) const {
     if (points >= header_.points) return;
     fail_cloud(path_, "ends after " + std::to_string(points) + " of its " +
                           std::to_string(header_.points) + " points");
   }
 
-  void add(std::size_t point, const Values& values) {
+  void add(std::size_t point) {
     if (point >= header_.points) return;
-    if (!std::isfinite(values[0]) || !std::isfinite(values[1]) || !std::isfinite(values[2])) {
-      ++cloud_.skipped;
-      return;
+    for (std::size_t i = 0; i < fields_.size(); ++i) {
+      const std::string& name = fields_[i].name;
+      if (name == "rgb" || name == "rgba") values_[i] = packed_colour(values_[i], fields_[i]);
     }
-    cloud_.positions.push_back(cloud_position(path_, point, values[0], values[1], values[2]));
-    if (!has_normals_) return;
-    cloud_.normals.push_back(Eigen::Vector3d(values[3], values[4], values[5]).cast<float>());
+    callback_(values_);
   }
 
   const fs::path& path_;
   const PcdHeader& header_;
-  std::array<std::optional<PcdField>, 6> fields_;
-  bool has_normals_ = false;
-  AttributedCloud cloud_;
+  const FieldValues& callback_;
+  std::vector<PcdField> fields_;
+  std::vector<double> values_;
 };
 
 }  // namespace
 
-AttributedCloud parse_pcd_cloud(const fs::path& path, std::string_view bytes) {
+void read_pcd_fields(const fs::path& path, std::string_view bytes, const SelectFields& select,
+                     const FieldValues& callback) {
   const std::string name = path.string();
   const PcdHeader header = parse_header(path, name, bytes);
   const std::string_view data = bytes.substr(header.end);
-  Points points(path, header);
+  FieldReader reader(path, header, select, callback);
   if (header.data == PcdData::text) {
-    points.read_text(name, data);
+    reader.read_text(name, data);
   } else if (header.data == PcdData::binary) {
-    points.read_binary(data, false);
+    reader.read_binary(data, false);
   } else {
     std::array<std::uint32_t, 2> sizes{};  // compressed and decompressed
     if (data.size() < sizeof sizes) fail_cloud(path, "ends before its compressed data");
     std::memcpy(sizes.data(), data.data(), sizeof sizes);
     if (data.size() - sizeof sizes < sizes[0]) fail_cloud(path, "ends within its compressed data");
-    points.read_binary(decompressed(path, data.substr(sizeof sizes, sizes[0]), sizes[1]), true);
+    reader.read_binary(decompressed(path, data.substr(sizeof sizes, sizes[0]), sizes[1]), true);
   }
-  return points.take();
+}
+
+AttributedCloud parse_pcd_cloud(const fs::path& path, std::string_view bytes) {
+  AttributedCloud cloud;
+  bool has_normals = false;
+  std::size_t point = 0;
+  const auto select = [&](std::span<const std::string> names) {
+    std::vector<std::size_t> indices;
+    for (const std::string_view name : {"x", "y", "z", "normal_x", "normal_y", "normal_z"}) {
+      const auto field = std::ranges::find(names, name);
+      if (field != names.end()) {
+        indices.push_back(static_cast<std::size_t>(field - names.begin()));
+      } else if (indices.size() < 3) {
+        fail_cloud(path, "must have the fields x, y and z");
+      }
+    }
+    has_normals = indices.size() == 6;
+    if (!has_normals) indices.resize(3);
+    return indices;
+  };
+  read_pcd_fields(path, bytes, select, [&](std::span<const double> values) {
+    const Eigen::Vector3d position(values[0], values[1], values[2]);
+    const std::size_t index = point++;
+    if (!position.allFinite()) {
+      ++cloud.skipped;
+      return;
+    }
+    cloud.positions.push_back(cloud_position(path, index, values[0], values[1], values[2]));
+    if (!has_normals) return;
+    cloud.normals.push_back(Eigen::Vector3d(values[3], values[4], values[5]).cast<float>());
+  });
+  return cloud;
 }
 
 }  // namespace skycap::geometry

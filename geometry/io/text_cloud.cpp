@@ -111,14 +111,25 @@ bool is_count(string_view line) {
          line.find_first_not_of("0123456789") == string_view::npos;
 }
 
+/// Callbacks for all columns of a file.
+struct FieldCallbacks {
+  const SelectFields& select;
+  const FieldValues& point;
+};
+
 class TextCloud {
  public:
-  TextCloud(const fs::path& path, string_view text, const TextChunkCallback& callback)
-      : path_(path),
+  /// With `fields`, points are passed to them instead of `callback`.
+  TextCloud(const fs::path& path, string_view text, const TextChunkCallback& callback,
+            const FieldCallbacks* fields = nullptr)
+      : fields_(fields),
+        path_(path),
         name_(path.string()),
         text_(text),
         scanner_(name_, text),
         callback_(callback) {}
+
+  std::size_t unnamed() const { return unnamed_; }
 
   std::size_t read() {
     do {
@@ -126,7 +137,7 @@ class TextCloud {
       if (!first) continue;
       if (first->starts_with('#') || first->starts_with("//")) {
         read_comment(*first);
-      } else if (layout_ && layout_->is_plain()) {
+      } else if (layout_ && layout_->is_plain() && fields_ == nullptr) {
         read_plain_point(*first);
       } else {
         read_line(*first);
@@ -146,7 +157,7 @@ class TextCloud {
     const std::vector<string_view> fields = split_fields(names, detect_layout(names).separator);
     if (const auto columns = columns_named(fields)) {
       named_columns_ = columns;
-      named_fields_ = fields.size();
+      set_names(fields);
     }
   }
 
@@ -181,25 +192,45 @@ class TextCloud {
       const std::size_t count = split_fields(line, layout_->separator).size();
       const bool is_named = named_columns_ && (has_header_ || named_fields_ == count);
       if (is_named) layout_->columns = *named_columns_;
+      select_fields(is_named, count);
     }
     const std::vector<string_view> fields = split_fields(line, layout_->separator);
     if (fields.size() > max_columns) {
       scanner_.fail("has " + std::to_string(fields.size()) +
                     " numbers; a point cloud in text format must have one point per line");
     }
-    std::array<double, 3> point{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const std::size_t column = layout_->columns[axis];
+    const auto number = [&](std::size_t column, const std::string& what) {
       if (column >= fields.size() || fields[column].empty()) {
-        scanner_.fail("ends where a coordinate is expected");
+        scanner_.fail("ends where " + what + " is expected");
       }
       const auto value = layout_->has_decimal_commas ? number_with_comma(fields[column])
                                                      : number_in(fields[column]);
-      if (!value) scanner_.fail_on_word(fields[column], "a coordinate");
-      point[axis] = *value;
+      if (!value) scanner_.fail_on_word(fields[column], what);
+      return *value;
+    };
+    std::array<double, 3> point{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      point[axis] = number(layout_->columns[axis], "a coordinate");
     }
     columns_of_last_ = fields.size();
-    add(point);
+    if (fields_ == nullptr) return add(point);
+    values_.assign(point.begin(), point.end());
+    for (const std::size_t column : selected_) values_.push_back(number(column, "a number"));
+    ++points_;
+    fields_->point(values_);
+  }
+
+  void set_names(const std::vector<string_view>& fields) {
+    named_fields_ = fields.size();
+    names_.clear();
+    for (const string_view field : fields) names_.push_back(column_name(field));
+  }
+
+  void select_fields(bool is_named, std::size_t columns) {
+    if (fields_ == nullptr) return;
+    const std::vector<std::string> names = is_named ? names_ : std::vector<std::string>();
+    selected_ = fields_->select(names);
+    unnamed_ = is_named ? 0 : columns - std::min<std::size_t>(columns, 3);
   }
 
   /// Returns whether the first line with content names the columns.
@@ -212,6 +243,7 @@ class TextCloud {
     const auto columns = columns_named(fields);
     if (!columns) scanner_.fail("is a header that does not name the columns x, y and z");
     named_columns_ = columns;
+    set_names(fields);
     return true;
   }
 
@@ -254,6 +286,11 @@ class TextCloud {
     }
   }
 
+  const FieldCallbacks* fields_;
+  std::vector<std::string> names_;     ///< of all columns
+  std::vector<std::size_t> selected_;  ///< columns after the coordinates
+  std::vector<double> values_;
+  std::size_t unnamed_ = 0;
   const fs::path& path_;
   const std::string name_;
   string_view text_;
@@ -272,6 +309,15 @@ class TextCloud {
 std::size_t read_text_cloud(const fs::path& path, string_view text,
                             const TextChunkCallback& callback) {
   return TextCloud(path, text, callback).read();
+}
+
+TextColumns read_text_fields(const fs::path& path, string_view text, const SelectFields& select,
+                             const FieldValues& callback) {
+  const FieldCallbacks fields{select, callback};
+  const TextChunkCallback unused = [](std::span<const Eigen::Vector3f>, std::size_t) {};
+  TextCloud cloud(path, text, unused, &fields);
+  cloud.read();
+  return {cloud.unnamed()};
 }
 
 }  // namespace skycap::geometry

@@ -298,6 +298,27 @@ void add_evaluate(CLI::App& app, const Console& console, Action& action) {
   run(*command, options, evaluate, console, action);
 }
 
+void add_convert(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* command = app.add_subcommand("convert", "Convert a point cloud to another format");
+  const auto options = std::make_shared<ConvertOptions>();
+  command
+      ->add_option("in", options->in,
+                   "Point cloud: .ply, .pcd, .las, .laz, .e57, .xyz, .txt, .asc, .pts or .csv")
+      ->required();
+  command
+      ->add_option("out", options->out,
+                   "Output file: .ply, .pcd, .las, .laz, .e57, .xyz, .txt, .asc or .csv")
+      ->required();
+  command
+      ->add_option("--shift", options->shift,
+                   "X, Y and Z added to all coordinates, in the unit of the file (default: 0 0 0)")
+      ->check(number_between(-1e8, 1e8));
+  command->add_option("--crs", options->crs,
+                      "File with the reference system of the output as WKT, for example .prj");
+  command->add_flag("--quiet", options->is_quiet, "Print errors and warnings only");
+  run(*command, options, convert_cloud, console, action);
+}
+
 void add_reconstruct(CLI::App& app, const Console& console, Action& action) {
   CLI::App* command =
       app.add_subcommand("reconstruct", "Reconstruct a surface mesh from a point cloud (Poisson)");
@@ -404,6 +425,7 @@ int parse_and_run(const std::vector<std::string>& arguments, Console console) {
     add_calibrate(app, console, action);
     add_compare(app, console, action);
     add_evaluate(app, console, action);
+    add_convert(app, console, action);
     add_reconstruct(app, console, action);
     add_model(app, console, action);
     add_report(app, console, action);

@@ -2,6 +2,7 @@
 /// Invalid input is reported by throwing Error.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -219,6 +220,16 @@ struct EvaluateOptions {
 /// respect to an inspection mission. Returns exit code 1 if a piece is missing, or if the flight
 /// exceeds a limit or violates the clearance.
 int evaluate(const EvaluateOptions& options, const Console& console);
+
+struct ConvertOptions {
+  std::filesystem::path in, out;
+  std::array<double, 3> shift = {0.0, 0.0, 0.0};  ///< added to all coordinates
+  std::optional<std::filesystem::path> crs;       ///< file with the reference system as WKT
+  bool is_quiet = false;
+};
+
+/// Converts a point cloud to another format.
+int convert_cloud(const ConvertOptions& options, const Console& console);
 
 struct ReconstructOptions {
   std::filesystem::path cloud;

@@ -1,7 +1,8 @@
 /// Adaptive arithmetic coder, the entropy coder of LAZ (A. Said, Introduction to Arithmetic Coding,
-/// HP Laboratories 2004; LAZ specification 1.4, section 5). Decoder and encoder share the models and
-/// have the same functions, so that an attribute of a point is coded by one function for both: the
-/// decoder ignores the passed value and returns the decoded one, the encoder returns the passed one.
+/// HP Laboratories 2004; LAZ specification 1.4, section 5). Decoder and encoder share the models
+/// and have the same functions, so that an attribute of a point is coded by one function for both:
+/// the decoder ignores the passed value and returns the decoded one, the encoder returns the passed
+/// one.
 #pragma once
 
 #include <cstddef>

@@ -34,7 +34,8 @@ std::vector<Item> standard_items(int format, std::size_t point_size) {
 
 // Byte offsets in the record and in its items.
 constexpr std::size_t compressor_offset = 0, coder_offset = 2, software_version_offset = 4,
-                      chunk_size_offset = 12, unused_offset = 16, item_count_offset = 32, items_offset = 34, item_size = 6;
+                      chunk_size_offset = 12, unused_offset = 16, item_count_offset = 32,
+                      items_offset = 34, item_size = 6;
 
 constexpr std::string_view damaged = "has a damaged LAZ record: ";
 

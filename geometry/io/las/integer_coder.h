@@ -65,7 +65,8 @@ std::uint32_t IntegerCoder::code(Coder& coder, std::uint32_t prediction, std::ui
     const std::uint32_t difference = (value - prediction) << unused;
     correction = static_cast<std::uint32_t>(static_cast<std::int32_t>(difference) >> unused);
     const bool is_positive = static_cast<std::int32_t>(correction) > 0;
-    magnitude = static_cast<std::uint32_t>(std::bit_width(is_positive ? correction - 1 : -correction));
+    magnitude =
+        static_cast<std::uint32_t>(std::bit_width(is_positive ? correction - 1 : -correction));
   }
   magnitude_ = coder.symbol(magnitudes_[context], magnitude);
   return (prediction + code_correction(coder, correction)) & mask_;

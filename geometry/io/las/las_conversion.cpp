@@ -25,7 +25,9 @@ std::vector<WrittenRecord> kept_records(LasReader& reader) {
   std::vector<WrittenRecord> records;
   for (const LasRecord& kept : reader.kept_records()) {
     if (kept.content.size() > 65535) continue;
-    records.push_back({kept.is_projection ? record::projection : record::specification, kept.id, {},
+    records.push_back({kept.is_projection ? record::projection : record::specification,
+                       kept.id,
+                       {},
                        kept.content});
   }
   return records;

@@ -68,7 +68,8 @@ void LasFileWriter::finish() {
   for (const auto& corner : extremes_) {
     Eigen::Vector3d position;
     for (int axis = 0; axis < 3; ++axis) {
-      position[axis] = corner[static_cast<std::size_t>(axis)] * file_.scale[axis] + file_.offset[axis];
+      position[axis] =
+          corner[static_cast<std::size_t>(axis)] * file_.scale[axis] + file_.offset[axis];
     }
     file_.bounds.extend(position);
   }

@@ -22,8 +22,8 @@ namespace skycap::geometry {
 
 /// Header fields of a LAS file.
 struct LasHeader {
-  int minor = 0;               ///< minor version: 1.minor
-  int format = 0;              ///< point format
+  int minor = 0;                   ///< minor version: 1.minor
+  int format = 0;                  ///< point format
   bool is_compressed = false;      ///< LAZ or COPC
   bool has_adjusted_time = false;  ///< times are GPS times minus 1e9 s, not seconds of the week
   std::uint64_t points = 0;

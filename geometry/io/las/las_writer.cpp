@@ -30,11 +30,11 @@ std::vector<std::uint8_t> make_header(const WrittenFile& file) {
   const auto put_text = [&](std::size_t offset, std::string_view text, std::size_t max) {
     std::ranges::copy(text.substr(0, max), bytes.begin() + static_cast<std::ptrdiff_t>(offset));
   };
-  const bool has_wkt = std::ranges::find(file.records, record::wkt, &WrittenRecord::id) !=
-                       file.records.end();
+  const bool has_wkt =
+      std::ranges::find(file.records, record::wkt, &WrittenRecord::id) != file.records.end();
   put_text(header::signature, "LASF", 4);
-  put(header::encoding,
-      static_cast<std::uint16_t>((file.has_week_time ? 0 : adjusted_time) | (has_wkt ? is_wkt : 0)));
+  put(header::encoding, static_cast<std::uint16_t>((file.has_week_time ? 0 : adjusted_time) |
+                                                   (has_wkt ? is_wkt : 0)));
   put(header::major, std::uint8_t{1});
   put(header::minor, std::uint8_t{4});
   put_text(header::system, file.system, 32);
@@ -44,7 +44,8 @@ std::vector<std::uint8_t> make_header(const WrittenFile& file) {
   put(header::records, static_cast<std::uint32_t>(file.records.size()));
   put(header::point_format,
       static_cast<std::uint8_t>(file.point_format | (file.is_compressed ? compressed_bit : 0)));
-  put(header::point_size, static_cast<std::uint16_t>(point_size(file.point_format) + file.extra_bytes));
+  put(header::point_size,
+      static_cast<std::uint16_t>(point_size(file.point_format) + file.extra_bytes));
   for (int axis = 0; axis < 3; ++axis) {
     put(header::scale + 8UL * axis, file.scale[axis]);
     put(header::offset + 8UL * axis, file.offset[axis]);
@@ -96,8 +97,7 @@ std::vector<WrittenChunk> find_chunks(std::istream& file, std::uint64_t begin, s
       bytes += value_at<std::uint32_t>(sizes.data(), i);
     }
     if (bytes > end - begin) throw_bad_file("has a chunk that extends beyond the points");
-    chunks.push_back(
-        {value_at<std::uint32_t>(sizes.data(), 0), static_cast<std::uint32_t>(bytes)});
+    chunks.push_back({value_at<std::uint32_t>(sizes.data(), 0), static_cast<std::uint32_t>(bytes)});
     begin += bytes;
   }
   return chunks;

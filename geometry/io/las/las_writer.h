@@ -35,12 +35,13 @@ WrittenRecord compression_record(int point_format, std::size_t point_size,
 /// Header fields of a file.
 struct WrittenFile {
   int point_format = 6;
-  std::uint16_t extra_bytes = 0;       ///< additional bytes of a point
-  bool is_compressed = false;          ///< requires a compression record
-  bool has_week_time = false;          ///< times are seconds of the week, not adjusted GPS time
+  std::uint16_t extra_bytes = 0;  ///< additional bytes of a point
+  bool is_compressed = false;     ///< requires a compression record
+  bool has_week_time = false;     ///< times are seconds of the week, not adjusted GPS time
   std::string_view system = "simulation";
   std::vector<WrittenRecord> records;  ///< records before the points
-  Eigen::Vector3d scale = Eigen::Vector3d::Constant(1e-4);  ///< coordinate: offset + integer * scale
+  Eigen::Vector3d scale =
+      Eigen::Vector3d::Constant(1e-4);  ///< coordinate: offset + integer * scale
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();
   std::uint64_t points = 0;
   std::array<std::uint64_t, 15> points_by_return = {};

@@ -128,7 +128,7 @@ struct Channel {
   Models user_data = Models(64, SymbolModel(256));          // by that of the last point
   PositionCoder position;
   std::array<RunningMedian, 12> x_steps, y_steps;
-  std::array<std::int32_t, 8> heights{};  // last height per return level
+  std::array<std::int32_t, 8> heights{};       // last height per return level
   std::array<std::uint16_t, 8> intensities{};  // last intensity per kind of return and time change
   IntegerCoder intensity{16, 4}, scan_angle{16, 2}, source{16, 1};
   TimeCoder times{true};
@@ -314,12 +314,11 @@ void Point14Coder<Coder>::code_numbers(Layers<Coder>& layers, std::uint32_t chan
   if (layers[Layer::intensities]) {
     const std::size_t kind = last.kind();
     std::uint16_t& old = channel.intensities[2 * kind + new_time];
-    last.intensity = old =
-        code(Layer::intensities, channel.intensity, old, point.intensity, kind);
+    last.intensity = old = code(Layer::intensities, channel.intensity, old, point.intensity, kind);
   }
   if (layers[Layer::scan_angles] && (changed & scan_angle_bit) != 0) {
-    last.scan_angle = code(Layer::scan_angles, channel.scan_angle, last.scan_angle,
-                           point.scan_angle, new_time);
+    last.scan_angle =
+        code(Layer::scan_angles, channel.scan_angle, last.scan_angle, point.scan_angle, new_time);
   }
   if (layers[Layer::sources] && (changed & source_bit) != 0) {
     last.source = code(Layer::sources, channel.source, last.source, point.source, 0);
@@ -336,8 +335,8 @@ struct Extras {
   std::vector<std::uint8_t> bytes;
 };
 
-/// Coder of the colours or the additional bytes of several channels. Version 3 predicts some of them
-/// from a wrong channel, which must be reproduced; version 4 corrects this.
+/// Coder of the colours or the additional bytes of several channels. Version 3 predicts some of
+/// them from a wrong channel, which must be reproduced; version 4 corrects this.
 template <typename State>
 class ChannelStates {
  public:

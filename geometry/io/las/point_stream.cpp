@@ -10,9 +10,9 @@ PointStream::PointStream(ReadBytes read, std::uint64_t file_size, const StoredPo
       chunks_(read_, file_size, points.first,
               parse_compression(record, points.format, points.size)) {
   const int version = parse_compression(record, points.format, points.size).version;
-  decoder_ = points.format >= 6 ? make_layered_decoder(points.format, version, points.size,
-                                                              points.decodes_all)
-                                : make_pointwise_decoder(points.format, points.size);
+  decoder_ = points.format >= 6
+                 ? make_layered_decoder(points.format, version, points.size, points.decodes_all)
+                 : make_pointwise_decoder(points.format, points.size);
 }
 
 void PointStream::next(char* point) {

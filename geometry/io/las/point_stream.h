@@ -12,7 +12,7 @@ namespace skycap::geometry::las {
 struct StoredPoints {
   int format = 0;        ///< 0 to 3 or 6 to 8
   std::size_t size = 0;  ///< uncompressed size of a point [bytes]; at least the size of the format
-  std::uint64_t first = 0;  ///< file offset
+  std::uint64_t first = 0;   ///< file offset
   bool decodes_all = false;  ///< decode all fields of formats 6 to 8 (chunk_decoder.h)
 };
 

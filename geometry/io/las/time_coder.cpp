@@ -21,9 +21,9 @@ std::size_t find_context(int multiple) {
 
 /// Returns the multiple of `last` that is closest to `step`, within the limits.
 int find_multiple(std::int32_t step, std::int32_t last) {
-  const float ratio = std::clamp(static_cast<float>(step) / static_cast<float>(last),
-                                 static_cast<float>(smallest_multiple),
-                                 static_cast<float>(largest_multiple));
+  const float ratio =
+      std::clamp(static_cast<float>(step) / static_cast<float>(last),
+                 static_cast<float>(smallest_multiple), static_cast<float>(largest_multiple));
   return static_cast<int>(ratio >= 0.0F ? ratio + 0.5F : ratio - 0.5F);
 }
 

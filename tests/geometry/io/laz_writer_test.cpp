@@ -1,6 +1,6 @@
-// LAZ files that Skycap writes. Decoder and encoder share their models, but not the arithmetic coder
-// and the choices of the encoder. Files of LASzip (laz_test.cpp) show that the decoder follows the
-// specification; these tests show that the encoder writes what the decoder reads.
+// LAZ files that Skycap writes. Decoder and encoder share their models, but not the arithmetic
+// coder and the choices of the encoder. Files of LASzip (laz_test.cpp) show that the decoder
+// follows the specification; these tests show that the encoder writes what the decoder reads.
 
 #include <cmath>
 #include <cstring>
@@ -183,14 +183,14 @@ std::string case_name(const testing::TestParamInfo<Case>& info) {
                                        : "Constant");
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Formats, LazWriter,
-    testing::Values(Case{6, 0, Content::random}, Case{6, 0, Content::survey},
-                    Case{6, 0, Content::constant}, Case{6, 3, Content::survey},
-                    Case{7, 0, Content::random}, Case{7, 0, Content::survey},
-                    Case{7, 5, Content::random}, Case{8, 0, Content::random},
-                    Case{8, 0, Content::survey}, Case{8, 2, Content::constant}),
-    case_name);
+INSTANTIATE_TEST_SUITE_P(Formats, LazWriter,
+                         testing::Values(Case{6, 0, Content::random}, Case{6, 0, Content::survey},
+                                         Case{6, 0, Content::constant}, Case{6, 3, Content::survey},
+                                         Case{7, 0, Content::random}, Case{7, 0, Content::survey},
+                                         Case{7, 5, Content::random}, Case{8, 0, Content::random},
+                                         Case{8, 0, Content::survey},
+                                         Case{8, 2, Content::constant}),
+                         case_name);
 
 TEST(LazWriter, CompressesSurveysToLessThanHalf) {
   const TemporaryFolder folder;
@@ -293,9 +293,9 @@ TEST_P(ConvertedLas, HasSamePointsAsOriginal) {
   for (const bool is_compressed : {false, true}) {
     SCOPED_TRACE(is_compressed);
     const std::filesystem::path to = folder.path() / (is_compressed ? "a.laz" : "a.las");
-    EXPECT_THAT(convert_las(from, to, is_compressed, Eigen::Vector3d(10.0, 20.0, 30.0), "",
-                            [](double) {}),
-                testing::IsEmpty());
+    EXPECT_THAT(
+        convert_las(from, to, is_compressed, Eigen::Vector3d(10.0, 20.0, 30.0), "", [](double) {}),
+        testing::IsEmpty());
     LasReader old(from), now(to);
     EXPECT_EQ(now.header().minor, 4);
     EXPECT_EQ(now.header().is_compressed, is_compressed);
@@ -305,9 +305,9 @@ TEST_P(ConvertedLas, HasSamePointsAsOriginal) {
       ASSERT_TRUE(now.next(found));
       ASSERT_EQ(found.positions.size(), expected.positions.size());
       for (std::size_t i = 0; i < found.positions.size(); ++i) {
-        EXPECT_LT((found.positions[i] - expected.positions[i] - Eigen::Vector3d(10.0, 20.0, 30.0))
-                      .norm(),
-                  1e-9);
+        EXPECT_LT(
+            (found.positions[i] - expected.positions[i] - Eigen::Vector3d(10.0, 20.0, 30.0)).norm(),
+            1e-9);
       }
       EXPECT_EQ(found.classes, expected.classes);
       EXPECT_EQ(found.colours, expected.colours);
