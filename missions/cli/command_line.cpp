@@ -264,10 +264,28 @@ void add_evaluate(CLI::App& app, const Console& console, Action& action) {
                    "Flight instead of a cloud: CSV file with t,x,y,z,yaw,pitch; --model must be an "
                    "inspection mission");
   what->require_option(1);
-  command
-      ->add_option("--model", options->model,
-                   "Reference: a mesh, builtin:NAME, model:NAME, or a mission file for its scene")
-      ->required();
+  CLI::App* reference = command->add_option_group("reference data");
+  reference->add_option(
+      "--model", options->model,
+      "Reference: a mesh, builtin:NAME, model:NAME, or a mission file for its scene");
+  CLI::Option* const cloud =
+      reference->add_option("--reference", options->reference,
+                            "Reference: an earlier cloud of the same building (M3C2 distances)");
+  reference->require_option(1);
+  command->add_flag("--align", options->is_aligned, "Align the cloud with --reference first")
+      ->needs(cloud);
+  const auto add_length = [&](const char* name, double& value, const char* description,
+                              double min) {
+    command->add_option(name, value, description)->check(number_between(min, 1000.0))->needs(cloud);
+  };
+  add_length("--cylinder", options->cylinder,
+             "M3C2: cylinder diameter d in metres (default: ten point spacings)", 1e-3);
+  add_length("--normal-scale", options->normal_scale,
+             "M3C2: normal scale D in metres (default: two cylinder diameters)", 1e-3);
+  add_length("--max-change", options->max_change,
+             "M3C2: maximum distance searched in metres (default: five cylinder diameters)", 1e-3);
+  add_length("--registration-error", options->registration_error,
+             "M3C2: registration error of the clouds in metres (default: 0)", 0.0);
   command->add_option("--distance", options->distance, "Coverage distance in metres")
       ->check(number_between(1e-6, 1e9));
   command->add_option("--samples", options->samples, "Number of surface samples (default: 100000)")
@@ -277,7 +295,8 @@ void add_evaluate(CLI::App& app, const Console& console, Action& action) {
                    "Number of pieces to split the cloud into; does not affect the result")
       ->check(CLI::Range(1, 1'000'000));
   command->add_option("--out", options->out,
-                      "Folder for the pieces and the merged evaluation.json");
+                      "Folder for the pieces and the merged evaluation.json, or for the "
+                      "results of --reference");
   add_task_options(*command, options->task, "piece");
   command->add_option("--threads", options->threads, "Number of threads (0: all processors)")
       ->check(CLI::Range(0, 1024));

@@ -198,11 +198,17 @@ struct ScanCommandOptions {
 int scan(const ScanCommandOptions& options, const Console& console);
 
 struct EvaluateOptions {
-  std::filesystem::path cloud;     ///< point cloud to evaluate; conflicts with `mesh`
-  std::filesystem::path mesh;      ///< mesh to evaluate, at points sampled on its surface
-  std::filesystem::path flight;    ///< flight around a structure to evaluate, instead of a cloud
-  std::string model;               ///< builtin:NAME, model:NAME, mesh file or mission file
-  std::optional<double> distance;  ///< coverage distance r_d [m]; default: from the mission file
+  std::filesystem::path cloud;      ///< point cloud to evaluate; conflicts with `mesh`
+  std::filesystem::path mesh;       ///< mesh to evaluate, at points sampled on its surface
+  std::filesystem::path flight;     ///< flight around a structure to evaluate, instead of a cloud
+  std::string model;                ///< builtin:NAME, model:NAME, mesh file or mission file
+  std::filesystem::path reference;  ///< earlier cloud of the same building, instead of `model`
+  bool is_aligned = false;          ///< whether to align the cloud with the reference first
+  double cylinder = 0.0;            ///< M3C2 cylinder diameter d [m]; zero: from the point spacing
+  double normal_scale = 0.0;        ///< M3C2 normal scale D [m]; zero: twice the cylinder diameter
+  double max_change = 0.0;  ///< greatest distance that is searched [m]; zero: five diameters
+  double registration_error = 0.0;  ///< [m]
+  std::optional<double> distance;   ///< coverage distance r_d [m]; default: from the mission file
   std::size_t samples = 100'000;
   std::size_t shards = 0;  ///< number of separately evaluated pieces of a cloud; zero: not divided
   std::optional<std::filesystem::path> out;  ///< output folder for the pieces and their results

@@ -74,6 +74,17 @@ std::string cloud_page(const std::filesystem::path& file) {
       name, data, {{"measured", encode_cloud(cloud.positions, attributes, default_report_points)}});
 }
 
+std::string coloured_points_page(const std::string& title, const std::vector<std::string>& facts,
+                                 std::span<const Eigen::Vector3f> points,
+                                 const std::vector<Colour>& colours) {
+  const Palette palette = make_palette(colours);
+  const Json data = {
+      {"kind", "cloud"}, {"title", title}, {"facts", facts}, {"palette", palette.colours}};
+  return page_text(title, data,
+                   {{"measured", encode_cloud(points, {{{"colour", palette.point_colours}}},
+                                              default_report_points)}});
+}
+
 std::string mission_page(const std::string& name, const session::SurveyOptions& survey,
                          const scene::SceneOptions& scene, std::span<const Eigen::Vector3f> surface,
                          const std::optional<Eigen::Vector3d>& pad) {

@@ -1,10 +1,13 @@
 /// HTML reports of a single cloud and of a mission before its survey.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -15,6 +18,11 @@ namespace skycap::missions::report {
 
 /// Returns the HTML report of a cloud file. Throws the errors of geometry::read_cloud().
 std::string cloud_page(const std::filesystem::path& cloud);
+
+/// Returns the HTML report of points with a colour each. `facts` are shown above the view.
+std::string coloured_points_page(const std::string& title, const std::vector<std::string>& facts,
+                                 std::span<const Eigen::Vector3f> points,
+                                 const std::vector<std::array<std::uint8_t, 3>>& colours);
 
 /// Returns the HTML report of a mission's scene with its airspace limits. `surface` contains points
 /// of the model.

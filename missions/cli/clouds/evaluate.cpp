@@ -19,6 +19,7 @@
 #include "geometry/io/record_log.h"
 #include "geometry/parallel.h"
 #include "geometry/surfaces/mesh.h"
+#include "missions/cli/clouds/evaluate_change.h"
 #include "missions/cli/clouds/evaluate_flight.h"
 #include "missions/cli/commands.h"
 #include "missions/cli/tasks.h"
@@ -407,6 +408,7 @@ void check_input(const EvaluateOptions& options, const Console& console) {
 }  // namespace
 
 int evaluate(const EvaluateOptions& options, const Console& console) {
+  if (!options.reference.empty()) return evaluate_change(options, console);
   if (!options.flight.empty()) return evaluate_flight_file(options, console);
   check_input(options, console);
   if (options.density && (options.shards > 0 || options.cloud.empty())) {
