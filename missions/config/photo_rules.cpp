@@ -121,6 +121,7 @@ void complete_photo(MissionDocument& document, const geometry::PhotoCameraConfig
                           .horizontal_fov = camera.horizontal_fov(),
                           .vertical_fov = camera.vertical_fov()};
   sensor.camera.noise.sigma = 0.0;
+  sensor.camera.noise.table = {};
   sensor.shutter = {.exposure = config.exposure, .readout = config.readout};
   if (document.is_inspection()) document.photo.gsd = camera.gsd(*document.inspection.range);
   const double gsd = planned_gsd(document);

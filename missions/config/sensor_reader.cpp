@@ -71,12 +71,35 @@ sim::WedgePrism read_prism(support::YamlSection section) {
   return prism;
 }
 
+sim::NoiseTable read_noise_table(support::YamlSection section) {
+  sim::NoiseTable table;
+  table.ranges = section.numbers("range");
+  table.incidences = section.numbers("incidence_deg");
+  for (double& incidence : table.incidences) incidence *= degree;
+  table.reflectances = section.numbers("reflectance");
+  table.sigmas = section.numbers("sigma");
+  if (table.ranges.empty()) section.fail_at("range", "must list at least one range");
+  if (table.sigmas.empty()) section.fail_at("sigma", "must list the standard deviations");
+  // Without an axis, the noise does not depend on it.
+  if (table.incidences.empty()) table.incidences = {0.0};
+  if (table.reflectances.empty()) table.reflectances = {1.0};
+  section.finish();
+  return table;
+}
+
 sim::RangeErrors read_errors(support::YamlSection section) {
   sim::RangeErrors errors;
   errors.sigma = section.number("sigma", 0.0);
   errors.sigma_per_metre = section.number("sigma_per_metre", 0.0);
   errors.sigma_per_square_metre = section.number("sigma_per_square_metre", 0.0);
   errors.incidence_power = section.number("incidence_power", 0.0);
+  if (auto table = section.section("table")) {
+    for (const char* const key :
+         {"sigma", "sigma_per_metre", "sigma_per_square_metre", "incidence_power"}) {
+      if (section.has(key)) section.fail_at(key, "conflicts with table; remove one of them");
+    }
+    errors.table = read_noise_table(*table);
+  }
   errors.channel_bias_sigma = section.number("channel_bias_sigma", 0.0);
   errors.range_step = section.number("range_step", 0.0);
   errors.angle_sigma = degree * section.number("angle_sigma_deg", 0.0);
@@ -170,10 +193,17 @@ sim::DepthCameraConfig read_camera(support::YamlSection& root,
     useful->finish();
   }
   if (auto noise = root.section("noise")) {
-    config.noise.sigma = noise->number("sigma");
-    config.noise.direction = noise->choice<sim::NoiseDirection>(
-        "direction", {{"isotropic", sim::NoiseDirection::isotropic},
-                      {"along_ray", sim::NoiseDirection::along_ray}});
+    if (auto table = noise->section("table")) {
+      config.noise.table = read_noise_table(*table);
+      config.noise.sigma = noise->number("sigma", 0.0);
+    } else {
+      config.noise.sigma = noise->number("sigma");
+    }
+    if (!config.noise.table.is_on() || noise->has("direction")) {
+      config.noise.direction = noise->choice<sim::NoiseDirection>(
+          "direction", {{"isotropic", sim::NoiseDirection::isotropic},
+                        {"along_ray", sim::NoiseDirection::along_ray}});
+    }
     noise->finish();
   }
   if (auto stereo = root.section("stereo")) {

@@ -27,7 +27,14 @@ using Eigen::Vector3f;
 using geometry::Scan;
 
 constexpr float no_return = -1.0F;
-constexpr std::uint32_t stereo_stream = 3;  // Streams 0, 1, 2: x, y, z of the point noise.
+// Streams 0, 1, 2: x, y, z of the point noise.
+constexpr std::uint32_t stereo_stream = 3, table_stream = 4;
+
+// Standard deviations of the depths of a band from a noise table.
+struct TableNoise {
+  const NoiseTable& table;
+  const Scene& scene;
+};
 
 // Limits of hits that give a return.
 struct Limits {
@@ -46,6 +53,25 @@ bool is_too_slanted(const RayPacket& packet, int lane, float min_cosine) {
   };
   const Vector3f direction = extract_lane(packet.direction), normal = extract_lane(packet.normal);
   return std::abs(direction.dot(normal)) < min_cosine * direction.norm() * normal.norm();
+}
+
+// Writes the standard deviations of the depths of a packet. The noise is along the ray.
+void store_sigmas(const RayPacket& packet, const TableNoise& noise, std::ptrdiff_t stride,
+                  float* sigmas) {
+  for (int lane = 0; lane < RayPacket::width; ++lane) {
+    float& sigma = sigmas[lane / packet_columns * stride + lane % packet_columns];
+    sigma = 0.0F;
+    if (packet.distance[lane] < 0.0F) continue;
+    const auto extract_lane = [lane](const auto& vectors) {
+      return Vector3f(vectors[0][lane], vectors[1][lane], vectors[2][lane]);
+    };
+    const Vector3f direction = extract_lane(packet.direction), normal = extract_lane(packet.normal);
+    const float length = direction.norm();
+    const float cosine = std::abs(direction.dot(normal)) / (length * normal.norm());
+    sigma = noise.table.sigma(packet.distance[lane] * length, cosine,
+                              noise.scene.reflectance(packet.triangle[lane])) /
+            length;
+  }
 }
 
 void store_depths(const RayPacket& packet, const Limits& limits, std::ptrdiff_t stride,
@@ -74,14 +100,17 @@ void for_each_packet(int left, int right, int top, int bottom, const Work& work)
 }
 
 // Casts the rays of one band of the image. The depths are written to `depths` row by row with the
-// table's stride. Rays of the padding are copies, and their depths are never read.
+// table's stride. Rays of the padding are copies, and their depths are never read. Standard
+// deviations are written to `sigmas` if there is a noise table.
 template <typename Rays>
 void cast_band(const Scene::Trees& trees, const RayTable& table, const Rays& rays,
-               const Limits& limits, int first_row, float* depths) {
+               const Limits& limits, int first_row, float* depths, const TableNoise* noise,
+               float* sigmas) {
   std::array<RayPacket, packets_in_tile> packets;
   for (RayPacket& packet : packets) rays.begin(packet);
   const RayKernels& kernels = ray_kernels();
-  const auto cast = limits.min_cosine > 0.0F ? kernels.cast_tile : kernels.cast_tile_distances;
+  const bool needs_surface = limits.min_cosine > 0.0F || noise != nullptr;
+  const auto cast = needs_surface ? kernels.cast_tile : kernels.cast_tile_distances;
   const int rows = std::min(band_rows, table.height - first_row);
   const std::ptrdiff_t stride = table.stride;
   for (int top = 0; top < rows; top += tile_rows) {
@@ -101,7 +130,11 @@ void cast_band(const Scene::Trees& trees, const RayTable& table, const Rays& ray
       }
       count = 0;
       for_each_packet(left, right, top, bottom, [&](int column, int row) {
-        store_depths(packets[count++], limits, stride, depths + row * stride + column);
+        const RayPacket& packet = packets[count++];
+        store_depths(packet, limits, stride, depths + row * stride + column);
+        if (noise != nullptr) {
+          store_sigmas(packet, *noise, stride, sigmas + row * stride + column);
+        }
       });
     }
   }
@@ -112,15 +145,17 @@ void cast_band(const Scene::Trees& trees, const RayTable& table, const Rays& ray
 // return, because drivers discard such mixed pixels.
 void cast_moving_band(const Scene::Trees& trees, const RayTable& table,
                       const std::vector<MovingRays>& instants, const Limits& limits, int first_row,
-                      float* depths) {
+                      float* depths, const TableNoise* noise, float* sigmas) {
   constexpr float one_surface = 1.02F;  // Maximum ratio of depths on one surface.
   const std::size_t size = static_cast<std::size_t>(table.stride) * band_rows;
   std::vector<float> one(size, no_return), sums(size, 0.0F), counts(size, 0.0F);
   std::vector<float> min(size, std::numeric_limits<float>::infinity()), max(size, 0.0F);
+  std::vector<float> sigma(noise != nullptr ? size : 0), sigma_sums(sigma);
   for (const MovingRays& rays : instants) {
-    cast_band(trees, table, rays, limits, first_row, one.data());
+    cast_band(trees, table, rays, limits, first_row, one.data(), noise, sigma.data());
     for (std::size_t i = 0; i < size; ++i) {
       if (one[i] < 0.0F) continue;
+      if (noise != nullptr) sigma_sums[i] += sigma[i];
       sums[i] += one[i];
       counts[i] += 1.0F;
       min[i] = std::min(min[i], one[i]);
@@ -131,6 +166,7 @@ void cast_moving_band(const Scene::Trees& trees, const RayTable& table,
     const bool is_seen =
         counts[i] > 0.0F && 2.0F * counts[i] >= static_cast<float>(instants.size());
     depths[i] = is_seen && max[i] <= one_surface * min[i] ? sums[i] / counts[i] : no_return;
+    if (noise != nullptr) sigmas[i] = is_seen ? sigma_sums[i] / counts[i] : 0.0F;
   }
 }
 
@@ -186,6 +222,22 @@ void add_stereo_errors(const RayTable& table, const StereoErrors& stereo, const 
   }
 }
 
+// Adds the noise of a table to the depths of one band.
+void add_table_noise(const RayTable& table, const NoiseKey& key, int first_row, const float* sigmas,
+                     float* depths) {
+  std::vector<float> normals(table.stride);
+  for (int y = first_row; y < std::min(first_row + band_rows, table.height); ++y) {
+    const std::size_t begin = static_cast<std::size_t>(y - first_row) * table.stride;
+    fill_normals(key, static_cast<std::uint32_t>(y) * table.stride, normals);
+    for (int x = 0; x < table.width; ++x) {
+      float& depth = depths[begin + x];
+      if (depth <= 0.0F) continue;
+      depth += sigmas[begin + x] * normals[x];
+      if (depth <= 0.0F) depth = no_return;
+    }
+  }
+}
+
 std::size_t count_returns(const RayTable& table, int first_row, const float* depths) {
   const int rows = std::min(band_rows, table.height - first_row);
   std::size_t returns = 0;
@@ -234,7 +286,8 @@ void emit_band(const RayTable& table, PinholeRow row, int first_row, const float
   }
 }
 
-// Returns the frame from `world_from_camera`. `cast` computes the depths of a band.
+// Returns the frame from `world_from_camera`. `cast` computes the depths of a band, and their
+// standard deviations if there is a noise table.
 template <typename Cast>
 Scan make_frame(const DepthCameraConfig& config, const RayTable& table,
                 const Eigen::Isometry3d& world_from_camera, std::uint64_t frame, unsigned threads,
@@ -252,10 +305,15 @@ Scan make_frame(const DepthCameraConfig& config, const RayTable& table,
   geometry::parallel_for(bands, threads, [&](std::size_t band) {
     const int first_row = static_cast<int>(band) * band_rows;
     float* const band_depths = depths.get() + band * band_size;
-    cast(first_row, band_depths);
+    std::vector<float> sigmas(config.noise.table.is_on() ? band_size : 0);
+    cast(first_row, band_depths, sigmas.data());
     if (config.stereo.is_on()) {
       const NoiseKey key = noise_key(config.noise.seed, stereo_stream, frame);
       add_stereo_errors(table, config.stereo, key, first_row, band_depths);
+    }
+    if (config.noise.table.is_on()) {
+      const NoiseKey key = noise_key(config.noise.seed, table_stream, frame);
+      add_table_noise(table, key, first_row, sigmas.data(), band_depths);
     }
     const std::size_t returns = count_returns(table, first_row, band_depths);
     for (const auto& [known, first_point] : offsets.count(band, returns)) {
@@ -284,10 +342,13 @@ Scan DepthCamera::scan(const Scene& scene, const Eigen::Isometry3d& world_from_c
                        std::uint64_t frame, unsigned threads, Scan buffer) const {
   const Scene::Trees& trees = scene.trees();
   const RayTable table(camera_, world_from_camera, trees.centre);
-  return make_frame(config_, table, world_from_camera, frame, threads, std::move(buffer),
-                    [&, limits = make_limits(config_)](int first_row, float* depths) {
-                      cast_band(trees, table, table, limits, first_row, depths);
-                    });
+  const TableNoise noise{config_.noise.table, scene};
+  const TableNoise* const table_noise = config_.noise.table.is_on() ? &noise : nullptr;
+  return make_frame(
+      config_, table, world_from_camera, frame, threads, std::move(buffer),
+      [&, limits = make_limits(config_)](int first_row, float* depths, float* sigmas) {
+        cast_band(trees, table, table, limits, first_row, depths, table_noise, sigmas);
+      });
 }
 
 Scan DepthCamera::scan(const Scene& scene, const Eigen::Isometry3d& estimated,
@@ -300,10 +361,13 @@ Scan DepthCamera::scan(const Scene& scene, const Eigen::Isometry3d& estimated,
   for (int i = 0; i < motion.instants; ++i) {
     instants.emplace_back(camera_, motion, i, trees.centre);
   }
-  return make_frame(config_, table, estimated, frame, threads, std::move(buffer),
-                    [&, limits = make_limits(config_)](int first_row, float* depths) {
-                      cast_moving_band(trees, table, instants, limits, first_row, depths);
-                    });
+  const TableNoise noise{config_.noise.table, scene};
+  const TableNoise* const table_noise = config_.noise.table.is_on() ? &noise : nullptr;
+  return make_frame(
+      config_, table, estimated, frame, threads, std::move(buffer),
+      [&, limits = make_limits(config_)](int first_row, float* depths, float* sigmas) {
+        cast_moving_band(trees, table, instants, limits, first_row, depths, table_noise, sigmas);
+      });
 }
 
 Scan DepthCamera::scan(const Scene& scene, const geometry::View& view, std::uint64_t frame,

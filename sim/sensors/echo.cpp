@@ -82,7 +82,8 @@ std::vector<Echo> form_echoes(std::span<RayHit> hits, const Sensitivity& sensiti
   return echoes;
 }
 
-float range_sigma(const RangeErrors& errors, float range, float cosine) {
+float range_sigma(const RangeErrors& errors, float range, float cosine, float reflectance) {
+  if (errors.table.is_on()) return errors.table.sigma(range, cosine, reflectance);
   const double linear = errors.sigma_per_metre * range;
   const double quadratic = errors.sigma_per_square_metre * range * range;
   double sigma = std::sqrt(errors.sigma * errors.sigma + linear * linear + quadratic * quadratic);

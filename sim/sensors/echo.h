@@ -36,7 +36,7 @@ std::vector<Echo> form_echoes(std::span<RayHit> hits, const Sensitivity& sensiti
                               const Beam& beam, std::vector<Echo> buffer = {});
 
 /// Returns the standard deviation of a measured range [m] (RangeErrors).
-float range_sigma(const RangeErrors& errors, float range, float cosine);
+float range_sigma(const RangeErrors& errors, float range, float cosine, float reflectance);
 
 /// Ray within a beam's cross-section, in units of the 1/e^2 radius, with its fraction of the
 /// energy.

@@ -26,7 +26,7 @@ struct Lidar::Impl {
       : config((given.validate(), given)),
         pattern(config),
         beam(beam_samples(config.beam.rings)),
-        has_constant_sigma(config.errors.sigma_per_metre == 0.0 &&
+        has_constant_sigma(!config.errors.table.is_on() && config.errors.sigma_per_metre == 0.0 &&
                            config.errors.sigma_per_square_metre == 0.0 &&
                            config.errors.incidence_power == 0.0) {
     for (const BeamSample& sample : beam) {
@@ -201,8 +201,8 @@ class BlockMeasurement {
       draw(azimuth_stream, azimuth_noise_);
       draw(elevation_stream, elevation_noise_);
     }
-    has_range_noise_ =
-        errors.sigma > 0.0 || errors.sigma_per_metre > 0.0 || errors.sigma_per_square_metre > 0.0;
+    has_range_noise_ = errors.sigma > 0.0 || errors.sigma_per_metre > 0.0 ||
+                       errors.sigma_per_square_metre > 0.0 || errors.table.is_on();
     echoes_.rows.resize(lidar_.beam.size() > 1 ? config_.beam.max_returns : 1);
     range_noise_.resize(echoes_.rows.size());
     if (!has_range_noise_) return;
@@ -305,7 +305,11 @@ class BlockMeasurement {
     if (has_range_noise_) {
       FourFloats sigma = FourFloats{} + static_cast<float>(errors.sigma);
       for (int lane = 0; lane < 4 && !lidar_.has_constant_sigma; ++lane) {
-        sigma[lane] = range_sigma(errors, range[lane], echoes_.rows[number].cosine[slot + lane]);
+        // Slots without an echo have no triangle.
+        if (echoes_.counts[slot + lane] <= static_cast<int>(number)) continue;
+        const EchoRow& row = echoes_.rows[number];
+        sigma[lane] = range_sigma(errors, range[lane], row.cosine[slot + lane],
+                                  scene_.reflectance(row.triangle[slot + lane]));
       }
       measured += sigma * load<FourFloats>(range_noise_[number], slot);
     }

@@ -23,6 +23,7 @@ void fill_normals(const NoiseKey& key, std::uint32_t first, std::span<float> nor
 
 void NoiseConfig::validate() const {
   require(sigma >= 0.0 && std::isfinite(sigma), "noise.sigma", sigma, "zero or more metres");
+  table.validate("noise.table");
 }
 
 }  // namespace skycap::sim

@@ -12,6 +12,8 @@
 #include <cstdint>
 #include <span>
 
+#include "sim/sensors/noise_table.h"
+
 namespace skycap::sim {
 
 /// Key of a sequence of 2^32 normal variates. Sequences with different keys are uncorrelated.
@@ -40,6 +42,7 @@ struct NoiseConfig {
   double sigma = 0.0;  ///< Standard deviation [m]. 0: exact points.
   NoiseDirection direction = NoiseDirection::isotropic;
   std::uint64_t seed = 0;
+  NoiseTable table = {};  ///< Additional noise along the ray.
 
   /// Throws Error{bad_config} naming the first field outside its interval.
   void validate() const;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geometry/error.h"
+#include "sim/scene/scene.h"
 #include "sim/sensors/scan_pattern.h"
 
 namespace skycap::sim {
@@ -25,7 +26,10 @@ DepthCameraConfig make_image(const LidarConfig& lidar, double wide, int columns,
                    .vertical_fov = high,
                    .min_range = lidar.min_range,
                    .max_range = lidar.max_range};
-  config.noise.sigma = lidar.errors.sigma;
+  const NoiseTable& table = lidar.errors.table;
+  config.noise.sigma = table.is_on()
+                           ? table.sigma(table.ranges.front(), 1.0, Scene::default_reflectance)
+                           : lidar.errors.sigma;
   config.noise.direction = NoiseDirection::along_ray;
   return config;
 }
@@ -227,6 +231,9 @@ double ray_spacing(const LidarConfig& lidar) {
 
 double range_noise(const LidarConfig& lidar, double range) {
   const auto& errors = lidar.errors;
+  if (errors.table.is_on()) {
+    return errors.table.sigma(range, 1.0, Scene::default_reflectance);
+  }
   return std::hypot(errors.sigma, errors.sigma_per_metre * range,
                     errors.sigma_per_square_metre * range * range);
 }

@@ -69,6 +69,7 @@ void LidarConfig::validate() const {
   require_between(errors.sigma_per_square_metre, 0.0, farthest_range,
                   "errors.sigma_per_square_metre");
   require_between(errors.incidence_power, 0.0, 100.0, "errors.incidence_power");
+  errors.table.validate("errors.table");
   require_between(errors.channel_bias_sigma, 0.0, farthest_range, "errors.channel_bias_sigma");
   require_between(errors.range_step, 0.0, farthest_range, "errors.range_step");
   require_between(errors.angle_sigma, 0.0, largest_angle, "errors.angle_sigma");

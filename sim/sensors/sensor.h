@@ -10,6 +10,8 @@
 #include <numbers>
 #include <vector>
 
+#include "sim/sensors/noise_table.h"
+
 namespace skycap::sim {
 
 /// One laser. A firing consists of one pulse per channel.
@@ -31,7 +33,7 @@ struct WedgePrism {
 
 /// Range errors. Zero disables a term. The standard deviation at range R and incidence theta is
 /// sqrt(sigma^2 + (sigma_per_metre R)^2 + (sigma_per_square_metre R^2)^2) /
-/// cos(theta)^incidence_power.
+/// cos(theta)^incidence_power, or that of the table.
 struct RangeErrors {
   double sigma = 0.0;  ///< Constant term [m].
   double sigma_per_metre = 0.0;
@@ -42,6 +44,7 @@ struct RangeErrors {
   double range_step = 0.0;  ///< Final rounding step of ranges [m].
   /// Standard deviation of the reported azimuth and of the elevation [rad].
   double angle_sigma = 0.0;
+  NoiseTable table = {};  ///< Replaces the first four terms.
 };
 
 /// Detection limit from the LiDAR equation for an extended diffuse surface. The received power is

@@ -77,13 +77,13 @@ TEST(ReceivedPower, IsOneAtRangeOfLidarEquation) {
 
 TEST(RangeSigma, IsRootOfSumOfSquares) {
   const RangeErrors errors{.sigma = 0.03, .sigma_per_metre = 0.004};
-  EXPECT_FLOAT_EQ(range_sigma(errors, 10.0F, 1.0F), 0.05F);
+  EXPECT_FLOAT_EQ(range_sigma(errors, 10.0F, 1.0F, 0.4F), 0.05F);
   // D435: z^2 s / (f B) with s = 0.08 px, f = 424 px, B = 0.05 m is 15 mm at 2 m.
   const RangeErrors stereo{.sigma_per_square_metre = 0.08 / (424 * 0.05)};
-  EXPECT_NEAR(range_sigma(stereo, 2.0F, 1.0F), 0.0151, 1e-4);
+  EXPECT_NEAR(range_sigma(stereo, 2.0F, 1.0F, 0.4F), 0.0151, 1e-4);
   const RangeErrors slanted{.sigma = 0.01, .incidence_power = 1.0};
-  EXPECT_FLOAT_EQ(range_sigma(slanted, 10.0F, 0.5F), 0.02F);
-  EXPECT_TRUE(std::isfinite(range_sigma(slanted, 10.0F, 0.0F)));
+  EXPECT_FLOAT_EQ(range_sigma(slanted, 10.0F, 0.5F, 0.4F), 0.02F);
+  EXPECT_TRUE(std::isfinite(range_sigma(slanted, 10.0F, 0.0F, 0.4F)));
 }
 
 TEST(BeamSamples, MatchGaussianProfileUpToRadius) {
