@@ -137,7 +137,7 @@ INSTANTIATE_TEST_SUITE_P(
         FormatCase{".e57", 0.0, {CloudColumn::classification}, true, {"classes are not kept"}},
         FormatCase{".las", 1e-9, normals, true, {no_normals}},
         FormatCase{".laz", 1e-9, normals, true, {no_normals}}),
-    [](const auto& info) { return std::string(info.param.extension).substr(1); });
+    [](const auto& file) { return std::string(file.param.extension).substr(1); });
 
 TEST(ColumnCloud, ScalesIntensitiesToSixteenBits) {
   const TemporaryFolder folder;
