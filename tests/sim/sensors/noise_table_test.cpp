@@ -98,7 +98,7 @@ Scene make_wall(double distance, double tilt, float reflectance) {
   constexpr double size = 200.0;
   geometry::Mesh mesh;
   for (const auto& [a, b] : {std::pair(-1.0, -1.0), {1.0, -1.0}, {1.0, 1.0}, {-1.0, 1.0}}) {
-    mesh.vertices.push_back((centre + size * (a * across + b * up)).cast<float>());
+    mesh.vertices.push_back(centre + size * (a * across + b * up));
   }
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
   const std::vector<float> reflectances(2, reflectance);
