@@ -37,7 +37,7 @@ class SplitScan : public tests::CubeScan {
     return folder_.path() / "part" / "pieces" / name;
   }
 
-  const std::vector<std::string> all_{"--format", "las,ply,pcd,xyz,rawlog,e57", "--with-truth"};
+  const std::vector<std::string> all_{"--format", "las,laz,ply,pcd,xyz,rawlog,e57", "--with-truth"};
 };
 
 TEST_F(SplitScan, MatchesUnsplitScanForAnyTaskOrder) {

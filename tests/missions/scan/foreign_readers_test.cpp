@@ -261,7 +261,7 @@ TEST_F(ForeignReader, ReadsFilesWrittenByPcl) {
 }
 
 TEST_F(ForeignReader, ReadsBackSkycapFiles) {
-  for (const std::string format : {"e57", "las", "las7", "pcd", "ply", "xyz"}) {
+  for (const std::string format : {"e57", "las", "las7", "laz", "pcd", "ply", "xyz"}) {
     const geometry::AttributedCloud read = geometry::read_cloud(written(format));
     ASSERT_EQ(read.positions.size(), returns.size()) << format;
     for (std::size_t i = 0; i < returns.size(); ++i) {

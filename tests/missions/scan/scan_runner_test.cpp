@@ -10,6 +10,7 @@
 
 #include "geometry/error.h"
 #include "geometry/io/e57_reader.h"
+#include "geometry/io/las/las_reader.h"
 #include "missions/scan/cloud_formats.h"
 #include "missions/scan/las_format.h"
 #include "tests/missions/scan/las_file.h"
@@ -45,7 +46,9 @@ class ScanRunner : public testing::Test {
   /// Selects the format by the file extension.
   std::shared_ptr<const scan::CloudFormat> format_for(const std::filesystem::path& file) const {
     if (file.extension() == ".e57") return scan::e57_format({.offset = far}, "test");
-    return scan::las_format({.point_format = 6, .grid = {.offset = far}});
+    return scan::las_format({.point_format = 6,
+                             .is_compressed = file.extension() == ".laz",
+                             .grid = {.offset = far}});
   }
 
   std::vector<scan::CloudFile> las_files(const std::filesystem::path& file,
@@ -119,15 +122,35 @@ TEST_F(ScanRunner, WritesEveryReturnToE57) {
 }
 
 TEST_F(ScanRunner, WritesSameBytesForAnyThreadCount) {
-  for (const std::string extension : {".las", ".e57"}) {
+  for (const std::string extension : {".las", ".laz", ".e57"}) {
     run(folder / ("one" + extension), 1);
     const std::vector<char> expected = read_bytes(folder / ("one" + extension));
-    ASSERT_GT(expected.size(), 1'000'000U);
+    ASSERT_GT(expected.size(), extension == ".laz" ? 300'000U : 1'000'000U);
     for (const unsigned threads : {2U, 4U}) {
       run(folder / ("more" + extension), threads);
       EXPECT_EQ(read_bytes(folder / ("more" + extension)), expected)
           << extension << ", " << threads;
     }
+  }
+}
+
+// The compressed file contains the same points as the uncompressed one, byte by byte.
+TEST_F(ScanRunner, CompressesSamePoints) {
+  config.beam = {
+      .rings = 1, .divergence_horizontal = 0.002, .divergence_vertical = 0.002, .max_returns = 3};
+  run(folder / "scan.las", 2);
+  run(folder / "scan.laz", 2);
+  EXPECT_LT(2 * std::filesystem::file_size(folder / "scan.laz"),
+            std::filesystem::file_size(folder / "scan.las"));
+  geometry::LasReader plain(folder / "scan.las", geometry::LasFields::all),
+      compressed(folder / "scan.laz", geometry::LasFields::all);
+  ASSERT_EQ(compressed.header().points, plain.header().points);
+  EXPECT_TRUE(compressed.header().is_compressed);
+  EXPECT_EQ(compressed.reference_system().wkt, plain.reference_system().wkt);
+  std::string expected, found;
+  while (plain.next_records(expected)) {
+    ASSERT_TRUE(compressed.next_records(found));
+    ASSERT_TRUE(found == expected);
   }
 }
 
@@ -154,7 +177,7 @@ TEST_F(ScanRunner, ResumesFromAnyCheckpointToSameBytes) {
     scan::ScanProgress progress;
     scan::CloudState state;
   };
-  for (const std::string extension : {".las", ".e57"}) {
+  for (const std::string extension : {".las", ".laz", ".e57"}) {
     const std::filesystem::path whole = folder / ("whole" + extension),
                                 killed = folder / ("killed" + extension);
     run(whole, 1);
