@@ -80,7 +80,7 @@ struct TextColumns {
   std::size_t unnamed = 0;  ///< number of columns after the coordinates without names
 };
 
-/// Reads x, y and z and the selected columns of a text file.
+/// Reads x, y and z and the selected columns of lines with one point each.
 TextColumns read_text_fields(const std::filesystem::path& path, std::string_view text,
                              const SelectFields& select, const FieldValues& callback);
 

@@ -90,7 +90,7 @@ std::vector<OutputField> output_fields(const ColumnCloud& cloud) {
   return fields;
 }
 
-std::uint32_t packed_colour(const ColumnCloud& cloud, std::size_t i) {
+std::uint32_t pack_colour(const ColumnCloud& cloud, std::size_t i) {
   std::uint32_t packed = 0;
   for (const CloudColumn name : {CloudColumn::red, CloudColumn::green, CloudColumn::blue}) {
     packed = packed << 8 | upper_byte(cloud.column(name)[i]);
@@ -171,7 +171,7 @@ void write_pcd(const fs::path& path, const ColumnCloud& cloud) {
   std::vector<OutputField> fields = output_fields(cloud);
   if (cloud.has_colours()) {
     fields.push_back({"", "rgb", PlyType::uint32, [&cloud](std::size_t i) {
-                        return static_cast<double>(packed_colour(cloud, i));
+                        return static_cast<double>(pack_colour(cloud, i));
                       }});
   }
   std::string names, sizes, types, counts;
@@ -193,7 +193,7 @@ void write_pcd(const fs::path& path, const ColumnCloud& cloud) {
 }
 
 template <typename Number>
-void append_text(std::string& text, Number number, char end) {
+void append_number_text(std::string& text, Number number, char end) {
   std::array<char, 40> digits{};
   text.append(digits.data(),
               std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr);
@@ -219,9 +219,9 @@ void write_xyz(const fs::path& path, const ColumnCloud& cloud) {
       const char end = &field == &fields.back() ? '\n' : ' ';
       const double value = field.value(i);
       if (field.type == PlyType::float32) {
-        append_text(output.bytes, static_cast<float>(value), end);
+        append_number_text(output.bytes, static_cast<float>(value), end);
       } else {
-        append_text(output.bytes, value, end);
+        append_number_text(output.bytes, value, end);
       }
     }
     output.write_if_large();

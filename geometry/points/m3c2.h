@@ -7,10 +7,10 @@
 /// along the normal are projected onto it. The distance is the difference between the mean
 /// projections. Its level of detection at 95% confidence is
 ///
-///     1.96 (sqrt(s1^2 / n1 + s2^2 / n2) + reg)
+///     1.96 (sqrt(s1^2 / n1 + s2^2 / n2) + reg).
 ///
-/// with the standard deviations s and the numbers n of the projections and the registration error
-/// reg. A distance beyond this level is a significant change.
+/// The s are the standard deviations and the n the numbers of the projections. The registration
+/// error is reg. A distance beyond this level is a significant change.
 #pragma once
 
 #include <cstddef>

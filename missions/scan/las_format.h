@@ -10,7 +10,7 @@
 namespace skycap::missions::scan {
 
 struct LasConfig {
-  int point_format = 6;  ///< Format 7 adds a colour: the intensity as grey.
+  int point_format = 6;        ///< Format 7 adds a colour: the intensity as grey.
   bool is_compressed = false;  ///< LAZ, with a chunk for each piece of the scan.
   CoordinateGrid grid = {};
 

@@ -46,9 +46,8 @@ class ScanRunner : public testing::Test {
   /// Selects the format by the file extension.
   std::shared_ptr<const scan::CloudFormat> format_for(const std::filesystem::path& file) const {
     if (file.extension() == ".e57") return scan::e57_format({.offset = far}, "test");
-    return scan::las_format({.point_format = 6,
-                             .is_compressed = file.extension() == ".laz",
-                             .grid = {.offset = far}});
+    return scan::las_format(
+        {.point_format = 6, .is_compressed = file.extension() == ".laz", .grid = {.offset = far}});
   }
 
   std::vector<scan::CloudFile> las_files(const std::filesystem::path& file,
