@@ -2,6 +2,7 @@
 
 #include "flight/clearance/measured_space.h"
 #include "geometry/io/cloud_io.h"
+#include "geometry/io/column_cloud.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/pose/world.h"
 #include "tests/fuzz/readers.h"
@@ -29,7 +30,22 @@ int run_mesh(const char* name, const std::uint8_t* bytes, std::size_t size) {
   });
 }
 
+/// Reads all attributes of a cloud, writes it as LAZ and reads it again.
+void require_convertible(const std::filesystem::path& path) {
+  const geometry::ColumnCloud cloud = geometry::read_column_cloud(path);
+  for (const auto& column : cloud.columns) {
+    require(column.empty() || column.size() == cloud.positions.size(), "points without attributes");
+  }
+  require(cloud.times.empty() || cloud.times.size() == cloud.positions.size(),
+          "points without times");
+  const auto copy = file_with("copy.laz", "");
+  geometry::write_column_cloud(copy, cloud);
+  require(geometry::read_column_cloud(copy).positions.size() == cloud.positions.size(),
+          "a copy with other points");
+}
+
 int run_cloud(const char* name, const std::uint8_t* bytes, std::size_t size) {
+  run_reader(name, [&] { require_convertible(file_with(name, bytes_to_string(bytes, size))); });
   return run_reader(name, [&] {
     const auto cloud = geometry::read_cloud(file_with(name, bytes_to_string(bytes, size)));
     const std::size_t count = cloud.positions.size();
