@@ -101,7 +101,8 @@ void Point10Decoder::read_attributes(ArithmeticDecoder& decoder, std::uint32_t c
 void Point10Decoder::read_position(ArithmeticDecoder& decoder) {
   const std::size_t context = return_context();
   const bool is_single = num_returns() == 1;
-  const auto step = position_.code_step(decoder, x_steps_[context], y_steps_[context], is_single);
+  const auto step =
+      position_.code_step(decoder, x_steps_[context], y_steps_[context], is_single, {});
   last_.x = wrapped_sum(last_.x, step.x);
   last_.y = wrapped_sum(last_.y, step.y);
   std::int32_t& height = heights_[return_level(num_returns(), return_number())];

@@ -22,7 +22,7 @@ class PositionCoder {
   };
   /// Codes a step and adds it to the medians. `is_single` is true for the only return of a pulse.
   template <typename Coder>
-  Step code_step(Coder& coder, RunningMedian& x, RunningMedian& y, bool is_single, Step value = {});
+  Step code_step(Coder& coder, RunningMedian& x, RunningMedian& y, bool is_single, Step value);
 
   /// Codes the z coordinate of the point whose step was coded last.
   template <typename Coder>
