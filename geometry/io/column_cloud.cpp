@@ -1,19 +1,14 @@
 #include "geometry/io/column_cloud.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <limits>
 #include <span>
 #include <utility>
 
-#include "geometry/byte_values.h"
 #include "geometry/io/cloud_parsers.h"
-#include "geometry/io/column_names.h"
+#include "geometry/io/column_formats.h"
 #include "geometry/io/e57_reader.h"
 #include "geometry/io/file.h"
-#include "geometry/io/las/las_conversion.h"
-#include "geometry/io/las/layout.h"
 #include "geometry/io/text/plain_text.h"
 #include "geometry/io/text/ply.h"
 
@@ -23,8 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double max_word = 65535.0;
-
-std::size_t index_of(CloudColumn name) { return static_cast<std::size_t>(name); }
 
 /// Collects points whose attributes are listed as column::x etc.
 class ColumnCollector {
@@ -212,59 +205,6 @@ void read_e57_columns(const fs::path& path, ColumnCloud& cloud) {
   cloud.crs_wkt = reader.reference_system();
   cloud.skipped = reader.skipped();
   if (reader.scans() > 1) cloud.lost.emplace_back("scans are joined; their poses are not kept");
-}
-
-void read_las_columns(const fs::path& path, ColumnCloud& cloud) {
-  LasReader reader(path, LasFields::all);
-  const LasHeader& header = reader.header();
-  const las::PointUpgrade upgrade(header);
-  const bool has_time = header.format == 1 || header.format >= 3;
-  const std::size_t size = las::point_size(upgrade.format()) + std::size_t{upgrade.extra_bytes()};
-  std::string records, points;
-  std::size_t withheld = 0;
-  while (reader.next_records(records)) {
-    upgrade.convert(records, points);
-    require_few_points(path, cloud.positions.size() + points.size() / size);
-    for (std::size_t begin = 0; begin < points.size(); begin += size) {
-      const char* const point = points.data() + begin;
-      const auto byte = [&](std::size_t offset) { return value_at<std::uint8_t>(point, offset); };
-      if ((byte(las::point::flags) & las::point::withheld) != 0) {
-        ++withheld;
-        continue;
-      }
-      Eigen::Vector3d& position = cloud.positions.emplace_back();
-      for (int axis = 0; axis < 3; ++axis) {
-        position[axis] =
-            value_at<std::int32_t>(point, 4UL * axis) * header.scale[axis] + header.offset[axis];
-      }
-      const auto add = [&](CloudColumn name, unsigned value) {
-        cloud.column(name).push_back(static_cast<float>(value));
-      };
-      add(CloudColumn::intensity, value_at<std::uint16_t>(point, las::point::intensity));
-      add(CloudColumn::classification, byte(las::point::classification));
-      add(CloudColumn::return_number, byte(las::point::returns) & 15U);
-      add(CloudColumn::returns, byte(las::point::returns) >> 4U);
-      if (has_time) cloud.times.push_back(value_at<double>(point, las::point::time));
-      if (!header.has_colours()) continue;
-      for (std::size_t i = 0; i < 3; ++i) {
-        cloud.columns[index_of(CloudColumn::red) + i].push_back(
-            value_at<std::uint16_t>(point, las::point::colour + 2 * i));
-      }
-    }
-  }
-  const LasReferenceSystem system = reader.reference_system();
-  cloud.crs_wkt = system.wkt;
-  if (system.wkt.empty() && (system.projected != 0 || system.geographic != 0)) {
-    cloud.lost.push_back(
-        "the reference system EPSG:" +
-        std::to_string(system.projected != 0 ? system.projected : system.geographic) +
-        " is not kept, because it is not WKT; use --crs");
-  }
-  if (withheld > 0)
-    cloud.lost.push_back(std::to_string(withheld) + " withheld points are not kept");
-  if (upgrade.extra_bytes() > 0) cloud.lost.emplace_back("additional bytes are not kept");
-  if (header.format == 8 || header.format == 10) cloud.lost.emplace_back("infrared is not kept");
-  cloud.lost.emplace_back("scan angle, user data, source and flags are not kept");
 }
 
 }  // namespace

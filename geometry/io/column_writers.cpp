@@ -5,29 +5,23 @@
 #include <cmath>
 #include <fstream>
 #include <functional>
-#include <limits>
 #include <utility>
 
 #include "geometry/byte_values.h"
 #include "geometry/error.h"
 #include "geometry/io/cloud_parsers.h"
 #include "geometry/io/column_cloud.h"
+#include "geometry/io/column_formats.h"
 #include "geometry/io/e57/crc32c.h"
 #include "geometry/io/e57/pages.h"
 #include "geometry/io/e57/scan_file.h"
 #include "geometry/io/file.h"
-#include "geometry/io/las/las_file_writer.h"
-#include "geometry/io/las/layout.h"
 #include "geometry/io/text/ply.h"
 
 namespace skycap::geometry {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::uint8_t rounded_byte(float value, float max) {
-  return value > 0.0F ? static_cast<std::uint8_t>(std::lround(std::min(value, max))) : 0;
-}
 
 /// Returns the upper 8 of 16 bits.
 std::uint8_t upper_byte(float word) {
@@ -291,108 +285,6 @@ void write_e57(const fs::path& path, const ColumnCloud& cloud) {
   output.finish();
 }
 
-/// Linear conversion of intensities to 16 bits.
-struct IntensityScale {
-  double low = 0.0, factor = 1.0;
-
-  std::uint16_t word(float value) const {
-    const double word = (double{value} - low) * factor;
-    return word > 0.0 ? static_cast<std::uint16_t>(std::lround(std::min(word, 65535.0))) : 0;
-  }
-};
-
-IntensityScale intensity_scale(const std::vector<float>& values, std::vector<std::string>& lost) {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  bool is_whole = true;
-  for (const float value : values) {
-    if (!std::isfinite(value)) continue;
-    low = std::min(low, double{value});
-    high = std::max(high, double{value});
-    is_whole = is_whole && value == std::floor(value);
-  }
-  if (!(low <= high) || (is_whole && low >= 0.0 && high <= 65535.0)) return {};
-  if (low >= 0.0 && high <= 1.0) return {0.0, 65535.0};
-  lost.push_back("intensities from " + std::to_string(low) + " to " + std::to_string(high) +
-                 " are scaled to 0 to 65535");
-  return {low, high > low ? 65535.0 / (high - low) : 0.0};
-}
-
-/// Returns an offset in whole kilometres and the finest scale that represents all coordinates.
-void choose_grid(const fs::path& path, const ColumnCloud& cloud, las::WrittenFile& file) {
-  Eigen::AlignedBox3d box;
-  for (const Eigen::Vector3d& position : cloud.positions) box.extend(position);
-  const bool is_geographic = cloud.crs_wkt.starts_with("GEOG");
-  file.scale = Eigen::Vector3d::Constant(1e-4);
-  if (is_geographic) file.scale.head<2>().setConstant(1e-9);
-  if (cloud.positions.empty()) return;
-  file.offset = is_geographic ? Eigen::Vector3d(box.center().array().round())
-                              : Eigen::Vector3d(1000.0 * (box.center() / 1000.0).array().round());
-  for (int axis = 0; axis < 3; ++axis) {
-    const double reach = std::max(std::abs(box.max()[axis] - file.offset[axis]),
-                                  std::abs(box.min()[axis] - file.offset[axis]));
-    constexpr double max_steps = 2147483647.0, coarsest = 1.0;
-    while (reach / file.scale[axis] > max_steps && file.scale[axis] < coarsest) {
-      file.scale[axis] *= 10.0;
-    }
-    if (reach / file.scale[axis] <= max_steps) continue;
-    fail_cloud(path, "coordinates extend over " + std::to_string(2.0 * reach) +
-                         " m, which LAS files cannot represent; remove outliers");
-  }
-}
-
-void write_las(const fs::path& path, const ColumnCloud& cloud, std::vector<std::string>& lost) {
-  las::WrittenFile file;
-  file.point_format = cloud.has_colours() ? 7 : 6;
-  file.is_compressed = lower_extension(path) == ".laz";
-  file.system = "conversion";
-  constexpr std::size_t longest_wkt = 65534;
-  if (cloud.crs_wkt.size() > longest_wkt) {
-    lost.emplace_back("the reference system is too long for LAS and not kept");
-  } else if (!cloud.crs_wkt.empty()) {
-    file.records.push_back(las::wkt_record(cloud.crs_wkt));
-  }
-  choose_grid(path, cloud, file);
-  const IntensityScale intensity = intensity_scale(cloud.column(CloudColumn::intensity), lost);
-  const std::size_t size = las::point_size(file.point_format);
-  const auto column = [&](CloudColumn name, std::size_t i, float missing) {
-    const std::vector<float>& values = cloud.column(name);
-    return values.empty() ? missing : values[i];
-  };
-  const Eigen::Vector3d offset = file.offset, scale = file.scale;
-  double rounding = 0.0;
-  las::LasFileWriter writer(path, std::move(file));
-  std::string record(size, '\0');
-  for (std::size_t i = 0; i < cloud.positions.size(); ++i) {
-    const auto put = [&](std::size_t at, auto value) { put_value(record.data(), at, value); };
-    for (int axis = 0; axis < 3; ++axis) {
-      const double exact = (cloud.positions[i][axis] - offset[axis]) / scale[axis];
-      const double whole = std::nearbyint(exact);
-      rounding = std::max(rounding, std::abs(exact - whole) * scale[axis]);
-      put(4UL * axis, static_cast<std::int32_t>(whole));
-    }
-    put(las::point::intensity, intensity.word(column(CloudColumn::intensity, i, 0.0F)));
-    const std::uint8_t number = rounded_byte(column(CloudColumn::return_number, i, 1.0F), 15.0F),
-                       returns = rounded_byte(column(CloudColumn::returns, i, 1.0F), 15.0F);
-    put(las::point::returns, static_cast<std::uint8_t>(number | returns << 4));
-    put(las::point::classification,
-        rounded_byte(column(CloudColumn::classification, i, 0.0F), 255.0F));
-    put(las::point::time, cloud.times.empty() ? 0.0 : cloud.times[i]);
-    for (std::size_t channel = 0; cloud.has_colours() && channel < 3; ++channel) {
-      const float word = cloud.columns[static_cast<std::size_t>(CloudColumn::red) + channel][i];
-      put(las::point::colour + 2 * channel, static_cast<std::uint16_t>(word));
-    }
-    writer.add(record);
-  }
-  writer.finish();
-  constexpr double negligible = 1e-6;
-  if (rounding > negligible) {
-    std::array<char, 32> text{};
-    const auto end = std::to_chars(text.data(), text.data() + text.size(), scale.x()).ptr;
-    lost.push_back("coordinates are rounded to " + std::string(text.data(), end));
-  }
-  if (cloud.has_normals()) lost.emplace_back("normals are not kept");
-}
-
 }  // namespace
 
 bool is_written_cloud(const fs::path& path) {
@@ -407,7 +299,7 @@ std::vector<std::string> write_column_cloud(const fs::path& path, const ColumnCl
   std::vector<std::string> lost;
   const bool is_las = extension == ".las" || extension == ".laz", is_e57 = extension == ".e57";
   if (is_las) {
-    write_las(path, cloud, lost);
+    write_las_columns(path, cloud, lost);
   } else if (is_e57) {
     write_e57(path, cloud);
   } else if (extension == ".ply") {
