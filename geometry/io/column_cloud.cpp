@@ -45,14 +45,18 @@ class ColumnCollector {
     require_few_points(path_, cloud_.positions.size());
     for (std::size_t i = 0; i < names_.size(); ++i) {
       if (names_[i] == column::time) cloud_.times.push_back(values[i]);
-      if (names_[i] == column::packed_colour) add_packed(static_cast<std::uint32_t>(values[i]));
+      if (names_[i] == column::packed_colour) add_packed(values[i]);
       if (names_[i] < column::first) continue;
       cloud_.columns[names_[i] - column::first].push_back(static_cast<float>(values[i]));
     }
   }
 
  private:
-  void add_packed(std::uint32_t packed) {
+  /// Signed and unsigned integers of 32 bits are colours, other numbers are black.
+  void add_packed(double value) {
+    constexpr double min = -2147483648.0, end = 4294967296.0;
+    const auto packed = static_cast<std::uint32_t>(
+        value >= min && value < end ? static_cast<std::int64_t>(value) : 0);
     for (const auto& [name, shift] :
          {std::pair(CloudColumn::red, 16), {CloudColumn::green, 8}, {CloudColumn::blue, 0}}) {
       cloud_.column(name).push_back(static_cast<float>(packed >> shift & 0xFF));

@@ -175,7 +175,8 @@ void E57Reader::add_points(std::size_t count, E57Points& points) {
     if (has_times_) points.times.push_back(values[field_indices_.time][i]);
     if (has_returns_) {
       const auto byte = [&](std::size_t field, double shift) {
-        return static_cast<std::uint8_t>(std::clamp(values[field][i] + shift, 0.0, 255.0));
+        const double value = values[field][i] + shift;  // may be NaN in invalid files
+        return value > 0.0 ? static_cast<std::uint8_t>(std::min(value, 255.0)) : std::uint8_t{0};
       };
       points.returns.push_back(
           {byte(field_indices_.returns, 1.0), byte(field_indices_.returns + 1, 0.0)});

@@ -182,10 +182,15 @@ double number_at(std::string_view bytes, std::size_t offset, const PcdField& fie
   }
 }
 
-/// Returns the integer whose bits are a real number in files of PCL, or the integer itself.
-double packed_colour(double number, const PcdField& field) {
-  if (field.type != 'F') return number;
-  return std::bit_cast<std::uint32_t>(static_cast<float>(number));
+/// Files of PCL contain colours as the bits of a real number, which may be NaN.
+bool is_packed_colour(const PcdField& field) {
+  return field.size == 4 && (field.name == "rgb" || field.name == "rgba");
+}
+
+double packed_colour_at(std::string_view bytes, std::size_t offset) {
+  std::uint32_t packed = 0;
+  std::memcpy(&packed, bytes.data() + offset, sizeof packed);
+  return packed;
 }
 
 class FieldReader {
@@ -215,6 +220,9 @@ class FieldReader {
         values_[i] = scanner.number<double>(
             column < words.size() ? std::optional<std::string_view>(words[column]) : std::nullopt,
             fields_[i].name);
+        if (is_packed_colour(fields_[i]) && fields_[i].type == 'F') {
+          values_[i] = std::bit_cast<std::uint32_t>(static_cast<float>(values_[i]));
+        }
       }
       add(point++);
       require_few_points(path_, point);
@@ -229,10 +237,10 @@ class FieldReader {
     for (std::size_t point = 0; point < header_.points; ++point) {
       for (std::size_t i = 0; i < fields_.size(); ++i) {
         const PcdField& field = fields_[i];
-        values_[i] = number_at(bytes,
-                               is_by_field ? field.before * header_.points + point * field.size
-                                           : point * header_.point_size + field.before,
-                               field);
+        const std::size_t offset = is_by_field ? field.before * header_.points + point * field.size
+                                               : point * header_.point_size + field.before;
+        values_[i] = is_packed_colour(field) ? packed_colour_at(bytes, offset)
+                                             : number_at(bytes, offset, field);
       }
       add(point);
     }
@@ -247,10 +255,6 @@ class FieldReader {
 
   void add(std::size_t point) {
     if (point >= header_.points) return;
-    for (std::size_t i = 0; i < fields_.size(); ++i) {
-      const std::string& name = fields_[i].name;
-      if (name == "rgb" || name == "rgba") values_[i] = packed_colour(values_[i], fields_[i]);
-    }
     callback_(values_);
   }
 

@@ -83,6 +83,13 @@ void M3c2Options::validate() const {
   require(is_length(normal_scale), "normal_scale", normal_scale);
   require(is_length(cylinder_diameter), "cylinder_diameter", cylinder_diameter);
   require(is_length(max_distance), "max_distance", max_distance);
+  constexpr double max_diameters = 500.0;
+  if (max_distance > max_diameters * cylinder_diameter) {
+    throw Error(ErrorKind::bad_config,
+                "max_distance (" + std::to_string(max_distance) +
+                    " m) is more than 500 times the " + "cylinder diameter (" +
+                    std::to_string(cylinder_diameter) + " m); lower it or raise the diameter");
+  }
   require(registration_error >= 0.0 && registration_error <= 1000.0, "registration_error",
           registration_error);
 }

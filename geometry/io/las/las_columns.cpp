@@ -96,6 +96,7 @@ void read_las_columns(const fs::path& path, ColumnCloud& cloud) {
         position[axis] =
             value_at<std::int32_t>(point, 4UL * axis) * header.scale[axis] + header.offset[axis];
       }
+      if (!position.allFinite()) fail_cloud(path, "has a point with non-finite coordinates");
       const auto add = [&](CloudColumn name, unsigned value) {
         cloud.column(name).push_back(static_cast<float>(value));
       };

@@ -21,10 +21,14 @@ bool has_old_time(int format) { return format == 1 || format >= 3; }
 
 }  // namespace
 
-std::vector<WrittenRecord> kept_records(LasReader& reader) {
+std::vector<WrittenRecord> kept_records(LasReader& reader, std::vector<std::string>& lost) {
+  constexpr std::size_t longest = 65535;
   std::vector<WrittenRecord> records;
   for (const LasRecord& kept : reader.kept_records()) {
-    if (kept.content.size() > 65535) continue;
+    if (kept.content.size() > longest) {
+      lost.emplace_back("a record of more than 65535 bytes is not kept");
+      continue;
+    }
     records.push_back({kept.is_projection ? record::projection : record::specification,
                        kept.id,
                        {},
@@ -96,7 +100,7 @@ std::vector<std::string> convert_las(const std::filesystem::path& from,
   file.is_compressed = is_compressed;
   file.has_week_time = !header.has_adjusted_time;
   file.system = "conversion";
-  file.records = kept_records(reader);
+  file.records = kept_records(reader, lost);
   if (!crs_wkt.empty()) {
     std::erase_if(file.records,
                   [](const WrittenRecord& kept) { return kept.user == record::projection; });

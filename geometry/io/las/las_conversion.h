@@ -14,7 +14,8 @@
 namespace skycap::geometry::las {
 
 /// Returns the records of a file that describe its reference system and its additional bytes.
-std::vector<WrittenRecord> kept_records(LasReader& reader);
+/// Appends a sentence to `lost` for each record that is too long.
+std::vector<WrittenRecord> kept_records(LasReader& reader, std::vector<std::string>& lost);
 
 /// Converts points of any format to format 6, 7 (with colours) or 8 (with infrared), keeping all
 /// fields and additional bytes. Waveforms are discarded.

@@ -78,7 +78,8 @@ std::string read_crs(const std::optional<fs::path>& file) {
     wkt.pop_back();
   }
   const bool is_wkt = wkt.find('[') != std::string::npos && wkt.ends_with(']');
-  if (is_wkt) return wkt;
+  constexpr std::size_t longest = 65534;
+  if (is_wkt && wkt.size() <= longest) return wkt;
   throw Error(ErrorKind::bad_file, file->string() + ": is not a reference system in WKT");
 }
 

@@ -211,6 +211,23 @@ TEST(ColumnCloud, ReadsNamedColumnsOfOtherPrograms) {
   EXPECT_EQ(ply.skipped, 1U);
 }
 
+// PCL writes opaque colours, whose bits are those of a NaN if red is 128 or more.
+TEST(ColumnCloud, ReadsOpaquePackedColours) {
+  const TemporaryFolder folder;
+  std::string pcd =
+      "FIELDS x y z rgb\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\nWIDTH 2\n"
+      "HEIGHT 1\nPOINTS 2\nDATA binary\n";
+  for (const std::uint32_t packed : {0xFF8140C0U, 0xFF01FF02U}) {
+    const std::array<float, 3> position{1.0F, 2.0F, 3.0F};
+    pcd.append(reinterpret_cast<const char*>(position.data()), sizeof position);
+    pcd.append(reinterpret_cast<const char*>(&packed), sizeof packed);
+  }
+  const ColumnCloud cloud = read_column_cloud(folder.file("a.pcd", pcd));
+  EXPECT_THAT(cloud.column(CloudColumn::red), ElementsAre(257.0F * 0x81, 257.0F));
+  EXPECT_THAT(cloud.column(CloudColumn::green), ElementsAre(257.0F * 0x40, 65535.0F));
+  EXPECT_THAT(cloud.column(CloudColumn::blue), ElementsAre(257.0F * 0xC0, 257.0F * 2));
+}
+
 TEST(ColumnCloud, RejectsHostileFilesWithOneLine) {
   const TemporaryFolder folder;
   const std::vector<std::pair<std::string, std::string>> files = {

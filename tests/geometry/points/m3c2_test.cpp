@@ -242,6 +242,9 @@ TEST(M3c2, RejectsInvalidOptions) {
       EXPECT_THROW(with.validate(), Error);
     }
   }
+  M3c2Options with = options;
+  with.max_distance = 501.0 * with.cylinder_diameter;
+  EXPECT_THROW(with.validate(), Error);
 }
 
 }  // namespace
