@@ -126,6 +126,55 @@ void expect_message(const std::string& text, const char* message) {
   }
 }
 
+constexpr const char* scanner_text =
+    "name: test\nkind: spinning\nrotation_rate_hz: 10\nfiring_period_us: 50\n"
+    "channels: {count: 2, lowest_deg: -1, highest_deg: 1}\nrange: {min: 1, max: 100}\n";
+constexpr const char* camera_text =
+    "name: test\nkind: camera\nhorizontal_fov_deg: 60\nvertical_fov_deg: 40\n"
+    "range: {min: 0.1, max: 10}\n";
+constexpr const char* table_text =
+    "{range: [1, 20], incidence_deg: [0, 60], reflectance: [0.1, 0.8], "
+    "sigma: [1, 2, 3, 4, 5, 6, 7, 8]}";
+
+std::string sensor_error(const std::string& text) {
+  return testing_support::thrown_message([&] { config::read_sensor(text, "sensor.yaml"); });
+}
+
+TEST(ReadSensor, ReadsNoiseTables) {
+  const auto expect_table = [](const sim::NoiseTable& table) {
+    ASSERT_TRUE(table.is_on());
+    EXPECT_NEAR(table.sigma(20.0, std::cos(60.0 * degree), 0.1), 7.0, 1e-5);
+    EXPECT_NEAR(table.sigma(1.0, std::cos(60.0 * degree), 0.8), 4.0, 1e-5);
+    EXPECT_NEAR(table.sigma(20.0, 1.0, 0.1), 5.0, 1e-5);
+  };
+  const auto scanner =
+      config::read_sensor(scanner_text + ("errors: {table: " + std::string(table_text)) + "}", "a");
+  expect_table(lidar(scanner).errors.table);
+  const auto camera =
+      config::read_sensor(camera_text + ("noise: {table: " + std::string(table_text)) + "}", "a");
+  const sim::NoiseConfig& noise = std::get<DepthCameraConfig>(camera.sensor).noise;
+  expect_table(noise.table);
+  EXPECT_EQ(noise.sigma, 0.0);
+  const auto plain = config::read_sensor(
+      scanner_text + std::string("errors: {table: {range: [10], sigma: [0.02]}}"), "a");
+  EXPECT_FLOAT_EQ(lidar(plain).errors.table.sigma(3.0, 0.2, 0.3), 0.02F);
+}
+
+TEST(ReadSensor, RejectsInvalidNoiseTables) {
+  const auto error = [](const std::string& errors) {
+    return sensor_error(scanner_text + ("errors: " + errors + "\n"));
+  };
+  EXPECT_THAT(error("{sigma: 0.1, table: {range: [1], sigma: [1]}}"),
+              HasSubstr("conflicts with table"));
+  EXPECT_THAT(error("{table: {sigma: [1]}}"), HasSubstr("must list at least one range"));
+  EXPECT_THAT(error("{table: {range: [1, 2], sigma: [1]}}"),
+              HasSubstr("sensor.yaml: errors.table.sigma lists 1 values"));
+  EXPECT_THAT(error("{table: {range: [2, 1], sigma: [1, 2]}}"), HasSubstr("in ascending order"));
+  EXPECT_THAT(error("{table: {range: [1], sigmas: [1]}}"), HasSubstr("sigma"));
+  EXPECT_THAT(error("{table: {range: [1], incidence_deg: [95], sigma: [1]}}"),
+              HasSubstr("errors.table.incidence contains"));
+}
+
 TEST(ReadSensor, ReportsFileLineAndKeyOfErrors) {
   const std::string head = "name: X\nkind: spinning\n";
   expect_message("name: X\n", "my.yaml:1: key kind is missing");
