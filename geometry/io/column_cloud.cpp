@@ -1,6 +1,7 @@
 #include "geometry/io/column_cloud.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 #include <utility>
@@ -103,16 +104,32 @@ void complete_columns(ColumnCloud& cloud) {
   }
 }
 
-/// Names in lower case without the prefix of CloudCompare's scalar fields.
+void add_unread(const std::vector<std::string>& names, ColumnCloud& cloud) {
+  if (names.empty()) return;
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  cloud.lost.push_back("not read: " + list);
+}
+
+/// Returns the attributes with known names, and their indices in `names`. States the other names in
+/// `cloud`, except those of padding and of coordinates with other names than x, y and z.
 std::vector<std::size_t> find_columns(std::span<const std::string> names,
-                                      std::vector<std::size_t>& indices) {
+                                      std::vector<std::size_t>& indices, ColumnCloud& cloud) {
+  constexpr std::array<std::string_view, 8> silent = {"_",        "east",   "easting",   "north",
+                                                      "northing", "height", "elevation", ""};
   std::vector<std::size_t> found;
+  std::vector<std::string> unread;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto name = find_column(lower_case(names[i]));
-    if (!name || std::ranges::find(found, *name) != found.end()) continue;
-    found.push_back(*name);
-    indices.push_back(i);
+    const std::string lower = lower_case(names[i]);
+    const auto name = find_column(lower);
+    if (name && std::ranges::find(found, *name) == found.end()) {
+      found.push_back(*name);
+      indices.push_back(i);
+    } else if (std::ranges::find(silent, lower) == silent.end()) {
+      unread.push_back(names[i]);
+    }
   }
+  add_unread(unread, cloud);
   return found;
 }
 
@@ -129,7 +146,7 @@ void read_ply_columns(const fs::path& path, std::string_view bytes, ColumnCloud&
       if (!property.count_type) names.push_back(property.name);
     }
     std::vector<std::size_t> indices;
-    ColumnCollector collector(path, find_columns(names, indices), cloud);
+    ColumnCollector collector(path, find_columns(names, indices, cloud), cloud);
     std::vector<std::string_view> wanted;
     for (const std::size_t i : indices) wanted.push_back(names[i]);
     std::vector<double> values(wanted.size());
@@ -151,7 +168,7 @@ void read_pcd_columns(const fs::path& path, std::string_view bytes, ColumnCloud&
       path, bytes,
       [&](std::span<const std::string> names) {
         std::vector<std::size_t> indices;
-        collector.emplace(path, find_columns(names, indices), cloud);
+        collector.emplace(path, find_columns(names, indices, cloud), cloud);
         return indices;
       },
       [&](std::span<const double> values) { collector->add(values); });
@@ -162,7 +179,7 @@ void read_text_columns(const fs::path& path, std::string_view bytes, ColumnCloud
   const TextColumns columns = read_text_fields(
       path, bytes,
       [&](std::span<const std::string> names) {
-        std::vector<std::size_t> indices, found = find_columns(names, indices);
+        std::vector<std::size_t> indices, found = find_columns(names, indices, cloud);
         // Coordinates may have other names; the reader adds them in front.
         std::vector<std::size_t> kept, kept_names = {column::x, column::y, column::z};
         for (std::size_t i = 0; i < found.size(); ++i) {
@@ -208,6 +225,7 @@ void read_e57_columns(const fs::path& path, ColumnCloud& cloud) {
   }
   cloud.crs_wkt = reader.reference_system();
   cloud.skipped = reader.skipped();
+  add_unread(reader.unread_fields(), cloud);
   if (reader.scans() > 1) cloud.lost.emplace_back("scans are joined; their poses are not kept");
 }
 

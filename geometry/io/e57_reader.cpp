@@ -118,6 +118,19 @@ E57Reader::FieldIndices E57Reader::find_field_indices(const e57::ScanDescription
   return field_indices;
 }
 
+std::vector<std::string> E57Reader::unread_fields() const {
+  std::vector<std::string> names;
+  for (const e57::ScanDescription& scan : description_.scans) {
+    const std::vector<std::size_t> read = find_field_indices(scan).fields;
+    for (std::size_t i = 0; i < scan.fields.size(); ++i) {
+      const std::string& name = scan.fields[i].name;
+      const bool is_new = std::ranges::find(names, name) == names.end();
+      if (is_new && std::ranges::find(read, i) == read.end()) names.push_back(name);
+    }
+  }
+  return names;
+}
+
 bool E57Reader::next(E57Points& points, std::size_t max) {
   points.positions.clear();
   points.normals.clear();

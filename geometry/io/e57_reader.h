@@ -50,6 +50,9 @@ class E57Reader {
   /// Returns the number of scans whose quaternion is four zeros. They are read as not rotated.
   std::size_t zero_rotations() const { return description_.zero_rotations; }
 
+  /// Returns the names of all fields that next() does not read.
+  std::vector<std::string> unread_fields() const;
+
   /// Replaces `points` with the next points, from at most `max` records of one scan. The result
   /// may be empty if all records are invalid. Returns false at the end of the file. Throws
   /// Error{bad_file} if the file is damaged.

@@ -175,7 +175,9 @@ void write_las_columns(const fs::path& path, const ColumnCloud& cloud,
   constexpr double negligible = 1e-6;
   if (rounding > negligible) {
     std::array<char, 32> text{};
-    const auto end = std::to_chars(text.data(), text.data() + text.size(), scale.x()).ptr;
+    const auto end =
+        std::to_chars(text.data(), text.data() + text.size(), scale.x(), std::chars_format::fixed)
+            .ptr;
     lost.push_back("coordinates are rounded to " + std::string(text.data(), end));
   }
   if (cloud.has_normals()) lost.emplace_back("normals are not kept");

@@ -211,6 +211,22 @@ TEST(ColumnCloud, ReadsNamedColumnsOfOtherPrograms) {
   EXPECT_EQ(ply.skipped, 1U);
 }
 
+TEST(ColumnCloud, StatesUnreadColumns) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(
+      read_column_cloud(folder.file("a.xyz", "x y z channel intensity Ring\n1 2 3 4 5 6\n")).lost,
+      ElementsAre("not read: channel, ring"));
+  EXPECT_THAT(
+      read_column_cloud(folder.file("a.ply",
+                                    "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n"
+                                    "property float y\nproperty float z\nproperty int view\n"
+                                    "end_header\n1 2 3 4\n"))
+          .lost,
+      ElementsAre("not read: view"));
+  EXPECT_THAT(read_column_cloud(folder.file("a.csv", "Easting,Northing,Height\n1,2,3\n")).lost,
+              IsEmpty());
+}
+
 // PCL writes opaque colours, whose bits are those of a NaN if red is 128 or more.
 TEST(ColumnCloud, ReadsOpaquePackedColours) {
   const TemporaryFolder folder;
