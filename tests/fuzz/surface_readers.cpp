@@ -1,6 +1,7 @@
 #include <sstream>
 
 #include "flight/clearance/measured_space.h"
+#include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
 #include "geometry/io/column_cloud.h"
 #include "geometry/io/mesh_io.h"
@@ -39,7 +40,14 @@ void require_convertible(const std::filesystem::path& path) {
   require(cloud.times.empty() || cloud.times.size() == cloud.positions.size(),
           "points without times");
   const auto copy = file_with("copy.laz", "");
-  geometry::write_column_cloud(copy, cloud);
+  try {
+    geometry::write_column_cloud(copy, cloud);
+  } catch (const Error& error) {  // the message names the copy
+    const bool is_expected =
+        std::string_view(error.what()).find("coordinates extend over") != std::string_view::npos;
+    require(is_expected, "a cloud that cannot be written");
+    return;
+  }
   require(geometry::read_column_cloud(copy).positions.size() == cloud.positions.size(),
           "a copy with other points");
 }

@@ -66,7 +66,11 @@ void choose_grid(const fs::path& path, const ColumnCloud& cloud, las::WrittenFil
       file.scale[axis] *= 10.0;
     }
     if (reach / file.scale[axis] <= max_steps) continue;
-    fail_cloud(path, "coordinates extend over " + std::to_string(2.0 * reach) +
+    std::array<char, 32> text{};
+    const auto end = std::to_chars(text.data(), text.data() + text.size(), 2.0 * reach,
+                                   std::chars_format::general, 4)
+                         .ptr;
+    fail_cloud(path, "coordinates extend over " + std::string(text.data(), end) +
                          " m, which LAS files cannot represent; remove outliers");
   }
 }

@@ -43,6 +43,19 @@ class PendingFile {
 
   const fs::path& path() const { return path_; }
 
+  /// Calls `write`. Messages of errors name the final file instead of this one.
+  template <typename Write>
+  auto named(const Write& write) const {
+    try {
+      return write();
+    } catch (const Error& error) {
+      std::string text = error.what();
+      const std::string pending = path_.string();
+      if (text.starts_with(pending)) text.replace(0, pending.size(), final_path_.string());
+      throw Error(error.kind(), text);
+    }
+  }
+
   void commit() const {
     geometry::sync_to_disk(path_);
     std::error_code error;
@@ -100,7 +113,10 @@ int convert_cloud(const ConvertOptions& options, const Console& console) {
   show(0.0);
   if (is_las_name(options.in) && is_las_name(options.out)) {
     const bool is_compressed = geometry::lower_extension(options.out) == ".laz";
-    lost = geometry::las::convert_las(options.in, pending.path(), is_compressed, shift, crs, show);
+    lost = pending.named([&] {
+      return geometry::las::convert_las(options.in, pending.path(), is_compressed, shift, crs,
+                                        show);
+    });
   } else {
     geometry::ColumnCloud cloud = geometry::read_column_cloud(options.in);
     if (!crs.empty()) cloud.crs_wkt = crs;
@@ -110,7 +126,8 @@ int convert_cloud(const ConvertOptions& options, const Console& console) {
     lost = cloud.lost;
     skipped = cloud.skipped;
     show(0.5);
-    const std::vector<std::string> more = geometry::write_column_cloud(pending.path(), cloud);
+    const std::vector<std::string> more =
+        pending.named([&] { return geometry::write_column_cloud(pending.path(), cloud); });
     lost.insert(lost.end(), more.begin(), more.end());
   }
   if (console.stop.stop_requested()) throw Error(ErrorKind::bad_usage, "interrupted");

@@ -75,6 +75,7 @@ TEST_F(Convert, ShiftsAndSetsReferenceSystem) {
 
 TEST_F(Convert, RejectsWithOneLineAndNoOutput) {
   folder.write("broken.laz", "LASF and nothing else");
+  folder.write("far.xyz", "0 0 0\n1e20 0 0\n");
   folder.write("nan.ply", "ply\nformat ascii 1.0\nelement vertex x\n");
   const std::size_t files = file_count();
   const auto rejected = [&](const std::string& in, const std::string& out) {
@@ -91,6 +92,8 @@ TEST_F(Convert, RejectsWithOneLineAndNoOutput) {
   EXPECT_THAT(rejected("broken.laz", "b.laz"), HasSubstr("broken.laz"));
   EXPECT_THAT(rejected("broken.laz", "b.ply"), HasSubstr("broken.laz"));
   EXPECT_THAT(rejected("nan.ply", "b.laz"), HasSubstr("nan.ply"));
+  EXPECT_THAT(rejected("far.xyz", "b.laz"),
+              HasSubstr("error: " + folder / "b.laz: coordinates extend over 1e+20 m"));
   EXPECT_THAT(convert("a.xyz", "b.laz", {"--crs", text}).err,
               HasSubstr("is not a reference system in WKT"));
   EXPECT_EQ(file_count(), files);
