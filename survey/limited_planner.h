@@ -29,6 +29,7 @@ class LimitedPlanner final : public Planner {
   const PlanningStep& last_step() const override { return step_; }
   StopReason stop_reason() const override;
   const CoverageEstimator* estimator() const override { return planner_->estimator(); }
+  std::optional<PatternRecord> pattern() const override { return planner_->pattern(); }
 
  private:
   std::optional<geometry::View> within_limits(std::optional<geometry::View> view);

@@ -38,6 +38,15 @@ struct PlanningStep {
   double processor_time_elsewhere = 0.0;  ///< processor time of other processes [s]
 };
 
+/// Views of a planner that flies a pattern.
+struct PatternRecord {
+  std::size_t planned = 0;  ///< Views of the pattern, without those that are passed en route.
+  std::size_t flown = 0;    ///< Views that were taken, including moved ones.
+  std::size_t moved = 0;    ///< Views taken from farther away than planned.
+  /// Views that are outside the limits or that the vehicle cannot reach, as planned.
+  std::vector<geometry::View> dropped{};
+};
+
 /// Thrown by a planner when a stop request ends the search for a view.
 class Interrupted : public std::exception {
  public:
@@ -89,6 +98,9 @@ class Planner {
 
   /// Returns the coverage estimator, or null if the planner has none.
   virtual const CoverageEstimator* estimator() const { return nullptr; }
+
+  /// Returns the views of the pattern so far, or nullopt for planners without a pattern.
+  virtual std::optional<PatternRecord> pattern() const { return std::nullopt; }
 
  protected:
   Planner() = default;

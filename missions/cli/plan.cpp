@@ -87,6 +87,18 @@ std::string missing_text(const session::SurveyRecord& record) {
          " of the surface, visible only from positions that are not verified as free\n";
 }
 
+/// Returns the numbers of a pattern's views. summary.json lists the views that were not flown.
+std::string pattern_text(const survey::PatternRecord& pattern) {
+  std::string text =
+      fmt::format("  pattern   {} of {} views flown", pattern.flown, pattern.planned);
+  if (pattern.moved > 0) text += fmt::format(", {} from farther away", pattern.moved);
+  if (!pattern.dropped.empty()) {
+    text += fmt::format("; {} dropped: outside the limits or unreachable (pattern.dropped in {})",
+                        pattern.dropped.size(), package::summary_name);
+  }
+  return text + "\n";
+}
+
 std::string summary_text(const std::string& name, const PlanOptions& options,
                          const evaluation::SimulationOptions& simulation,
                          const session::SurveyRecord& record,
@@ -104,6 +116,7 @@ std::string summary_text(const std::string& name, const PlanOptions& options,
                      simulation.scene, simulation.evaluation.registration_distance,
                      record.cloud.positions));
   text += missing_text(record);
+  if (record.pattern) text += pattern_text(*record.pattern);
   if (flight && flight->written) text += package::written_text(*flight->written);
   if (simulation.scene.model == "prior") {
     text += "  scene     prior data of the targets, used as ground truth\n";

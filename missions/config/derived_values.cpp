@@ -210,6 +210,51 @@ survey::fixed_views::FixedViewsConfig fixed_views_config(const MissionDocument& 
   return config;
 }
 
+/// Returns the target that the mission specifies, or nullopt if the scene must grant it.
+std::optional<survey::patterns::PatternTarget> pattern_target(const MissionDocument& document) {
+  using namespace survey::patterns;
+  const PatternSettings& settings = document.planner.patterns;
+  if (settings.top) {
+    const double base = settings.base.value_or(compute_ground_height(document));
+    if (!settings.polygon.empty()) return target_of_polygon(settings.polygon, base, *settings.top);
+    return target_of_line(settings.line, settings.width, base, *settings.top);
+  }
+  if (!document.scene.priors) return std::nullopt;
+  const site_data::SitePriors& site = *document.scene.priors;
+  const geometry::Mesh surfaces = make_surfaces(site, Role::target);
+  if (!surfaces.triangles.empty()) return target_of(surfaces);
+  AlignedBox3d box;
+  for (std::size_t i = 0; i < site.priors.size(); ++i) {
+    if (site.sources[i].role == Role::target) box.extend(site.priors[i].box);
+  }
+  return box.isEmpty() ? std::nullopt : std::optional(target_of(box));
+}
+
+survey::patterns::PatternConfig pattern_config(const MissionDocument& document,
+                                               survey::patterns::Pattern pattern,
+                                               const survey::PlannerOptions& planner) {
+  const sim::SurveySensorOptions& sensor = document.sensor.options;
+  const Eigen::Vector2d half_fov(0.5 * planner.camera.horizontal_fov,
+                                 0.5 * planner.camera.vertical_fov);
+  survey::patterns::PatternConfig config{
+      .pattern = pattern,
+      .settings = document.planner.patterns,
+      .spacing = planner.spacing,
+      .scene_box = planner.scene_box,
+      .limits = planner.limits,
+      .view_distance = planner.view_distance,
+      .max_distance = planner.camera.max_range,
+      .footprint = {2.0 * planner.view_distance * std::tan(half_fov.x()),
+                    2.0 * planner.view_distance * std::tan(half_fov.y())},
+      .ground = compute_ground_height(document),
+      .is_swept = sensor.mount && find_scanner_kind(*sensor.scanner) != ScannerKind::rosette,
+      .target = pattern_target(document)};
+  if (document.flight.has_vehicle() && sensor.is_moving()) {
+    config.frame_spacing = document.flight.options.cruise_speed * sensor.frame_period;
+  }
+  return config;
+}
+
 survey::external::ExternalConfig external_config(const MissionDocument& document,
                                                  const survey::PlannerOptions& planner) {
   survey::external::ExternalConfig config;
@@ -377,7 +422,15 @@ std::size_t view_limit(const MissionDocument& document) {
   return max_views;
 }
 
-bool has_target(const MissionDocument& document) { return has_role(document, Role::target); }
+bool has_target(const MissionDocument& document) {
+  return has_role(document, Role::target) || has_outline_as_truth(document);
+}
+
+bool has_outline_as_truth(const MissionDocument& document) {
+  const survey::patterns::PatternSettings& outline = document.planner.patterns;
+  return document.scene.model == targets_as_truth && document.prior.empty() && outline.top &&
+         (!outline.polygon.empty() || !outline.line.empty());
+}
 
 bool has_obstacle(const MissionDocument& document) { return has_role(document, Role::obstacle); }
 
@@ -427,6 +480,8 @@ survey::PlannerOptions planner_options(const MissionDocument& document,
     options.method = pb_nbv_config(document, options);
   } else if (survey::has_fixed_views(options.name)) {
     options.method = fixed_views_config(document, options);
+  } else if (const auto pattern = survey::pattern_of(options.name)) {
+    options.method = pattern_config(document, *pattern, options);
   } else if (options.name == survey::PlannerName::external) {
     options.method = external_config(document, options);
   } else {

@@ -66,6 +66,10 @@ std::size_t view_limit(const MissionDocument& document);
 bool has_target(const MissionDocument& document);
 bool has_obstacle(const MissionDocument& document);
 
+/// Returns whether the outline of the pattern is the target, because the mission uses targets as
+/// ground truth and has no prior data.
+bool has_outline_as_truth(const MissionDocument& document);
+
 /// Returns the role of the prior data used as ground truth instead of scene.model. It is `truth`,
 /// or `target` if scene.model is "prior"; nullopt if scene.model provides the scene.
 std::optional<site_data::Role> truth_role(const MissionDocument& document);

@@ -73,6 +73,10 @@ inline constexpr auto field_keys = std::to_array<FieldKey>({
     // survey::fixed_views::FixedViewsConfig
     {"uniform.views", "uniform.views"},
     {"uniform.rings", "uniform.rings"},
+    // survey::patterns::PatternConfig
+    {"pattern.forward_overlap", "pattern.forward_overlap"},
+    {"pattern.side_overlap", "pattern.side_overlap"},
+    {"pattern.pitch", "pattern.pitch_deg"},
     // survey::pb_nbv::PbNbvConfig
     {"pb_nbv.candidates", "pb_nbv.candidates"},
     {"pb_nbv.parallels", "pb_nbv.parallels"},

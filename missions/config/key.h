@@ -25,6 +25,7 @@ enum class KeyType {
   choice,
   vector,
   polygon,  ///< three or more corners [x, y]
+  line,     ///< two or more points [x, y]
   volumes,  ///< list of {corners, floor, ceiling}
   vectors,  ///< list of [x, y, z]
   texts,    ///< list of strings

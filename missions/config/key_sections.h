@@ -18,6 +18,7 @@ std::vector<Key> planner_keys();
 std::vector<Key> volumetric_keys();
 std::vector<Key> uniform_keys();
 std::vector<Key> pb_nbv_keys();
+std::vector<Key> pattern_keys();
 std::vector<Key> start_keys();
 std::vector<Key> limits_keys();
 std::vector<Key> evaluation_keys();
@@ -33,7 +34,7 @@ struct KeySection {
   std::vector<Key> (*keys)();
 };
 
-inline constexpr std::array<KeySection, 18> key_sections{{{"", general_keys},
+inline constexpr std::array<KeySection, 19> key_sections{{{"", general_keys},
                                                           {"scene", scene_keys},
                                                           {"sensor", sensor_keys},
                                                           {"photo", photo_keys},
@@ -42,6 +43,7 @@ inline constexpr std::array<KeySection, 18> key_sections{{{"", general_keys},
                                                           {"volumetric", volumetric_keys},
                                                           {"uniform", uniform_keys},
                                                           {"pb_nbv", pb_nbv_keys},
+                                                          {"pattern", pattern_keys},
                                                           {"start", start_keys},
                                                           {"limits", limits_keys},
                                                           {"evaluation", evaluation_keys},

@@ -29,6 +29,7 @@
 #include "missions/site_data/source.h"
 #include "sim/sensors/survey_sensor.h"
 #include "survey/fixed_views/fixed_views_config.h"
+#include "survey/patterns/pattern_config.h"
 #include "survey/pb_nbv/pb_nbv_config.h"
 #include "survey/photo/photo_planner.h"
 #include "survey/planners/planner_names.h"
@@ -130,6 +131,7 @@ struct PlannerSection {
   survey::volumetric::VolumetricSettings volumetric;   ///< settings of the planners rsv to ae
   survey::pb_nbv::PbNbvSettings pb_nbv;                ///< settings of PB-NBV
   survey::fixed_views::FixedViewSettings fixed_views;  ///< settings of uniform and random
+  survey::patterns::PatternSettings patterns;          ///< settings of nadir to corridor
   /// Shared library or Python file of the planner external; resolve() makes it absolute.
   std::optional<std::string> file;
   bool is_file_by_user = false;  ///< whether the user of this run states `file`; else not executed

@@ -128,7 +128,8 @@ std::optional<Eigen::Vector3d> vector_in(const support::YamlNode& node, const Ke
   return vector;
 }
 
-std::optional<std::vector<Eigen::Vector2d>> polygon_in(const support::YamlNode& node) {
+std::optional<std::vector<Eigen::Vector2d>> polygon_in(const support::YamlNode& node,
+                                                       std::size_t min_corners = 3) {
   std::vector<Eigen::Vector2d> polygon;
   for (const support::YamlNode& corner : node.items) {
     if (corner.items.size() != 2) return std::nullopt;
@@ -136,7 +137,7 @@ std::optional<std::vector<Eigen::Vector2d>> polygon_in(const support::YamlNode& 
     if (!x || !y) return std::nullopt;
     polygon.push_back({*x, *y});
   }
-  return polygon.size() >= 3 ? std::optional(polygon) : std::nullopt;
+  return polygon.size() >= min_corners ? std::optional(polygon) : std::nullopt;
 }
 
 std::optional<geometry::Prism> volume_in(const support::YamlNode& node) {
@@ -201,6 +202,7 @@ std::optional<KeyValue> number_or_word(const Key& key, const support::YamlNode& 
 std::optional<KeyValue> value_for(const Key& key, const support::YamlNode& node) {
   if (key.type == KeyType::vector) return vector_in(node, key.range);
   if (key.type == KeyType::polygon) return polygon_in(node);
+  if (key.type == KeyType::line) return polygon_in(node, 2);
   if (key.type == KeyType::volumes) return list_in<geometry::Prism>(node, volume_in);
   const auto vector = [&](const support::YamlNode& item) { return vector_in(item, key.range); };
   if (key.type == KeyType::vectors) return list_in<Eigen::Vector3d>(node, vector);

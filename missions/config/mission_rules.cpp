@@ -56,10 +56,12 @@ void check_capture(const MissionDocument& document) {
   if (!document.flight.has_vehicle()) {
     document.reject("sensor.capture", std::string(wants) + "a vehicle; set flight.vehicle");
   }
-  if (document.planner.name != survey::PlannerName::skycap) {
-    document.reject(
-        "sensor.capture",
-        std::string(wants) + "a planner that uses en-route frames; set planner.name: skycap");
+  if (document.planner.name != survey::PlannerName::skycap &&
+      !survey::pattern_of(document.planner.name)) {
+    document.reject("sensor.capture",
+                    std::string(wants) +
+                        "a planner that uses en-route frames; set planner.name: skycap, or a "
+                        "pattern");
   }
 }
 
@@ -386,7 +388,45 @@ std::string in_keys(std::string_view message) {
 
 }  // namespace
 
+namespace {
+
+void check_pattern(const MissionDocument& document) {
+  const survey::patterns::PatternSettings& settings = document.planner.patterns;
+  const bool has_polygon = !settings.polygon.empty(), has_line = !settings.line.empty();
+  if (has_polygon && has_line) {
+    document.reject("pattern.line", "conflicts with pattern.polygon; remove one of the two");
+  }
+  if ((has_polygon || has_line) && !settings.top) {
+    document.reject("pattern.top",
+                    "is missing; set the z of the target's top in the mission frame [m]");
+  }
+  if (settings.top && !has_polygon && !has_line) {
+    document.reject("pattern.top", "requires pattern.polygon or pattern.line");
+  }
+  const double base = settings.base.value_or(compute_ground_height(document));
+  if (settings.top && *settings.top < base) {
+    document.reject("pattern.top", "must be at least the z of the base (" + short_text(base) +
+                                       " m); raise it or lower pattern.base");
+  }
+  if (has_line && survey::patterns::length_of(settings.line) < 1e-6) {
+    document.reject("pattern.line", "must contain two different points");
+  }
+  if (has_polygon && survey::patterns::area_of(settings.polygon) < 1e-6) {
+    document.reject("pattern.polygon", "must not have zero area; check its corners");
+  }
+  if (!survey::pattern_of(document.planner.name)) return;
+  const bool is_simulated = !document.scene.model.empty() || document.scene.truth;
+  if (!has_polygon && !has_line && !has_target(document) && !is_simulated) {
+    document.reject("planner.name",
+                    "a pattern requires a target; add prior data with role: target, or set "
+                    "pattern.polygon or pattern.line with pattern.top");
+  }
+}
+
+}  // namespace
+
 void check_planner(const MissionDocument& document) {
+  check_pattern(document);
   if (document.planner.name == survey::PlannerName::external && !document.planner.file) {
     document.reject("planner.file",
                     "is missing; the planner external requires a shared library (.so) or a Python "

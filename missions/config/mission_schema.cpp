@@ -62,10 +62,10 @@ Json vector_schema(const Key& key) {
       {"type", "array"}, {"items", number_schema(key, "number")}, {"minItems", 3}, {"maxItems", 3}};
 }
 
-Json polygon_schema() {
+Json polygon_schema(int min_corners = 3) {
   const Json corner{
       {"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 2}, {"maxItems", 2}};
-  return {{"type", "array"}, {"items", corner}, {"minItems", 3}};
+  return {{"type", "array"}, {"items", corner}, {"minItems", min_corners}};
 }
 
 Json volumes_schema() {
@@ -120,6 +120,8 @@ Json value_schema(const Key& key) {
       return {{"enum", key.choices}};
     case KeyType::polygon:
       return polygon_schema();
+    case KeyType::line:
+      return polygon_schema(2);
     case KeyType::volumes:
       return volumes_schema();
     case KeyType::vectors:
@@ -197,6 +199,8 @@ std::string expected_value(const Key& key) {
       return listed(key.choices);
     case KeyType::polygon:
       return "three or more corners [x, y]" + unit;
+    case KeyType::line:
+      return "two or more points [x, y]" + unit;
     case KeyType::volumes:
       return "a list of {corners, floor, ceiling}" + unit;
     case KeyType::vectors:

@@ -15,17 +15,18 @@ auto rule(auto member) {
 
 /// Returns the key `photo.patterns`. An empty list means no patterns.
 Key patterns_key() {
-  return otherwise("facade, dome, oblique",
-                   key_for("photo.patterns", KeyType::texts, photo(&PhotoSection::patterns),
-                           "Flight patterns that are compared with the plan and provide candidate "
-                           "photos for it: nadir, oblique, dome, facade. []: none."));
+  return otherwise(
+      "facade, dome, oblique",
+      key_for("photo.patterns", KeyType::texts, photo(&PhotoSection::patterns),
+              "Flight patterns that are compared with the plan and provide candidate "
+              "photos for it: nadir, oblique, dome, facade, rings, corridor. []: none."));
 }
 
 /// Returns the key `photo.pattern`, which replaces the selection of photos.
 Key pattern_key() {
   Key key = text_key("photo.pattern", photo(&PhotoSection::pattern),
-                     "Flight pattern that replaces the choice of photos: nadir, oblique, dome or "
-                     "facade.");
+                     "Flight pattern that replaces the choice of photos: nadir, oblique, dome, "
+                     "facade, rings or corridor.");
   return otherwise("none", key);
 }
 

@@ -20,8 +20,8 @@ double planned_gsd(const MissionDocument& document) {
 
 Pattern pattern_of(const MissionDocument& document, const char* key, const std::string& name) {
   if (const auto pattern = survey::photo::pattern_named(name)) return *pattern;
-  document.reject(key,
-                  "unknown pattern " + name + "; expected one of: nadir, oblique, dome, facade");
+  document.reject(
+      key, "unknown pattern " + name + "; expected one of: " + survey::patterns::pattern_names());
 }
 
 std::vector<Pattern> patterns_of(const MissionDocument& document) {
@@ -72,16 +72,18 @@ std::string_view find_replacing_photo_key(std::string_view key) {
       Replacement{"planner.min_gain", "photo.target_share"},
       Replacement{"evaluation.coverage_distance", "photo.gsd"},
       Replacement{"limits.max_views", "photo.max_photos"},
+      Replacement{"pattern.forward_overlap", "photo.forward_overlap"},
+      Replacement{"pattern.side_overlap", "photo.side_overlap"},
       Replacement{"flight.initial_pattern", "photo.pattern"},
   };
   const auto found = std::ranges::find(replacements, key, &Replacement::key);
   if (found != replacements.end()) return found->by;
-  const bool is_of_depth = (key.starts_with("sensor.") && key != "sensor.photo_camera") ||
-                           (key.starts_with("planner.") && !key.starts_with("planner.scene_box")) ||
-                           key.starts_with("volumetric.") || key.starts_with("uniform.") ||
-                           key.starts_with("pb_nbv.") || key.starts_with("start.") ||
-                           key.starts_with("live.") || key == "flight.views" ||
-                           key == "flight.vehicles" || key == "flight.pads";
+  const bool is_of_depth =
+      (key.starts_with("sensor.") && key != "sensor.photo_camera") ||
+      (key.starts_with("planner.") && !key.starts_with("planner.scene_box")) ||
+      key.starts_with("volumetric.") || key.starts_with("uniform.") || key.starts_with("pb_nbv.") ||
+      key.starts_with("pattern.") || key.starts_with("start.") || key.starts_with("live.") ||
+      key == "flight.views" || key == "flight.vehicles" || key == "flight.pads";
   return is_of_depth ? "-" : std::string_view();
 }
 

@@ -45,7 +45,9 @@ std::vector<Key> which_planner() {
               "volumetric; use resolution_radius as voxel width, spacing, view_distance, "
               "scene_box and the section volumetric. pb-nbv, pb-nbv-released: PB-NBV as published "
               "and as in its released code; section pb_nbv. uniform, random: fixed views without "
-              "planning; section uniform. external: the planner in planner.file.")),
+              "planning; section uniform. nadir, oblique, dome, facade, rings, corridor: standard "
+              "patterns around a known target; section pattern. external: the planner in "
+              "planner.file.")),
       otherwise(
           "none",
           text_key(

@@ -2,11 +2,13 @@
 #include "missions/config/prior_sources.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <utility>
 
 #include "missions/config/derived_values.h"
 #include "missions/config/mission_keys.h"
+#include "missions/site_data/extrusion.h"
 
 namespace skycap::missions::config {
 namespace {
@@ -95,6 +97,40 @@ std::shared_ptr<const site_data::SitePriors> read_priors(const MissionDocument& 
   };
   return std::make_shared<const site_data::SitePriors>(
       site_data::read_site_priors(sources, frame, failed, reading));
+}
+
+std::shared_ptr<const site_data::SitePriors> make_outline_priors(const MissionDocument& document) {
+  if (!has_outline_as_truth(document)) return nullptr;
+  const survey::patterns::PatternSettings& settings = document.planner.patterns;
+  constexpr double thinnest = 0.2, uncertainty = 1.0;
+  site_data::Prior prior{.role = Role::target, .uncertainty = uncertainty, .format = "outline"};
+  site_data::Object object{.id = "1", .kind = "outline"};
+  const double base = settings.base.value_or(document.scene.position.z());
+  const auto add = [&](const std::vector<Eigen::Vector2d>& corners) {
+    std::vector<Eigen::Vector3d> bottom, top;
+    for (const Eigen::Vector2d& corner : corners) {
+      bottom.emplace_back(corner.x(), corner.y(), base);
+      top.emplace_back(corner.x(), corner.y(), settings.top.value());
+    }
+    const std::uint32_t begin[] = {0, static_cast<std::uint32_t>(corners.size())};
+    site_data::add_extruded(object, bottom, top, begin);
+  };
+  if (!settings.polygon.empty()) add(settings.polygon);
+  for (std::size_t i = 0; i + 1 < settings.line.size(); ++i) {
+    const Eigen::Vector2d& from = settings.line[i];
+    const Eigen::Vector2d& to = settings.line[i + 1];
+    if (from == to) continue;
+    const Eigen::Vector2d along = (to - from).normalized();
+    const Eigen::Vector2d side =
+        0.5 * std::max(settings.width, thinnest) * Eigen::Vector2d(-along.y(), along.x());
+    add({from - side, to - side, to + side, from + side});
+  }
+  prior.box = geometry::bounding_box(object.mesh);
+  prior.objects.push_back(std::move(object));
+  site_data::SitePriors site;
+  site.sources.push_back({.file = "pattern", .role = Role::target});
+  site.priors.push_back(std::move(prior));
+  return std::make_shared<const site_data::SitePriors>(std::move(site));
 }
 
 void check_truth(const MissionDocument& document) {

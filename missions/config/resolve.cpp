@@ -154,7 +154,7 @@ void derive_scanner_flight(MissionDocument& document) {
   const sim::SurveySensorOptions& sensor = document.sensor.options;
   if (!sensor.mount) return;
   flight::FlightOptions& flight = document.flight.options;
-  if (!document.has("flight.initial_pattern")) {
+  if (!document.has("flight.initial_pattern") && !survey::pattern_of(document.planner.name)) {
     document.flight.initial_pattern =
         session::default_initial_pattern(compute_unknown_box(document));
   }
@@ -176,6 +176,13 @@ void derive_scanner_flight(MissionDocument& document) {
         std::max(flight.map_error, deviations * std::hypot(noise, noise_aside(document)));
   }
   if (!document.has("scan.sensor")) document.scan.sensor = *document.sensor.lidar;
+}
+
+/// Keeps the order of a pattern's rows in the route if the key is not set.
+void derive_pattern_order(MissionDocument& document) {
+  if (survey::pattern_of(document.planner.name) && !document.has("flight.order")) {
+    document.flight.options.order = flight::VisitOrder::survey;
+  }
 }
 
 /// Derives the sampling from planner.density_per_m2 for keys that are not set. The neighbourhood of
@@ -276,7 +283,9 @@ void derive_scene_box(MissionDocument& document) {
   const double margin = margin_around_targets(document, box);
   box.min().array() -= margin;
   box.max().array() += margin;
-  if (document.scene.ground || document.flight.has_vehicle()) {
+  const bool has_ground =
+      document.scene.ground || (document.flight.has_vehicle() && !has_outline_as_truth(document));
+  if (has_ground) {
     // Points close to the ground count as ground, which is not a target.
     const double ground =
         document.scene.position.z() + 2.0 * document.evaluation.registration_distance;
@@ -335,11 +344,12 @@ void complete_own_keys(MissionDocument& document, const Profiles& profiles) {
 void complete_with_priors(MissionDocument& document,
                           std::shared_ptr<const site_data::SitePriors> priors) {
   make_sources_absolute(document);
-  document.scene.priors = std::move(priors);
+  document.scene.priors = priors ? std::move(priors) : make_outline_priors(document);
   document.scene.truth = truth_role(document);
   if (document.scene.priors && !document.is_for_known_target()) check_truth(document);
   derive_scene_box(document);
   derive_scanner_flight(document);
+  derive_pattern_order(document);
   check_flight(document);
   check_fleet(document);
   derive_building_preset(document);
@@ -533,7 +543,7 @@ MissionSetup read_mission(const std::filesystem::path& file,
     document.reject(
         "scene.model",
         std::string("is missing; set a model, for example builtin:teapot") +
-            (has_target(document)
+            (has_target(document) || document.planner.patterns.top
                  ? ", or plan with --use-prior-as-truth, which uses the targets as ground truth"
                  : "") +
             ". A mission without a scene is a live survey, which uses skycap next, serve and "

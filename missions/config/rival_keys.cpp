@@ -1,4 +1,4 @@
-// Keys of the sections `uniform` and `pb_nbv`.
+// Keys of the sections `uniform`, `pb_nbv` and `pattern`.
 #include "missions/config/key_builders.h"
 #include "missions/config/key_sections.h"
 
@@ -6,6 +6,7 @@ namespace skycap::missions::config {
 namespace {
 
 using survey::fixed_views::FixedViewSettings;
+using survey::patterns::PatternSettings;
 using survey::pb_nbv::PbNbvSettings;
 
 auto fixed(auto member) {
@@ -13,6 +14,10 @@ auto fixed(auto member) {
 }
 auto pb(auto member) {
   return [member](auto& m) -> auto& { return m.planner.pb_nbv.*member; };
+}
+
+auto pattern(auto member) {
+  return [member](auto& m) -> auto& { return m.planner.patterns.*member; };
 }
 
 }  // namespace
@@ -62,6 +67,42 @@ std::vector<Key> pb_nbv_keys() {
                            "d_c: distance of the candidates from the sphere around the box.")),
       choice_key("pb_nbv.region", {"sphere", "hemisphere"}, pb(&PbNbvSettings::region),
                  "Part of the sphere with candidates."),
+  };
+}
+
+std::vector<Key> pattern_keys() {
+  Key polygon = list_key("pattern.polygon", KeyType::polygon, pattern(&PatternSettings::polygon),
+                         "Outline of the target of the planners nadir, oblique, dome, facade, "
+                         "rings and corridor: corners [east, north] in the mission frame. Replaces "
+                         "targets of prior data. Requires pattern.top.");
+  Key line = list_key("pattern.line", KeyType::line, pattern(&PatternSettings::line),
+                      "Line along the target of a pattern: points [east, north] in the mission "
+                      "frame. Conflicts with pattern.polygon. Requires pattern.top.");
+  polygon.unit = line.unit = "m";
+  return {
+      otherwise("outline of the prior data with role: target", polygon),
+      otherwise("none; the planner corridor follows the long axis of the target", line),
+      number_key("pattern.width", "m", between(0, 1e4), pattern(&PatternSettings::width),
+                 "Width of the structure along pattern.line."),
+      otherwise("ground",
+                number_key("pattern.base", "m", between(-far_away, far_away),
+                           pattern(&PatternSettings::base),
+                           "z of the base of the target of pattern.polygon or pattern.line.")),
+      otherwise("required with pattern.polygon and pattern.line",
+                number_key("pattern.top", "m", between(-far_away, far_away),
+                           pattern(&PatternSettings::top),
+                           "z of the top of the target of pattern.polygon or pattern.line.")),
+      number_key("pattern.forward_overlap", "fraction", between(0, 0.95),
+                 pattern(&PatternSettings::forward_overlap),
+                 "Overlap of consecutive views of a pattern at the view distance, as a fraction."),
+      number_key("pattern.side_overlap", "fraction", between(0, 0.95),
+                 pattern(&PatternSettings::side_overlap),
+                 "Overlap of neighbouring rows of a pattern at the view distance, as a fraction."),
+      otherwise("-45 for oblique and corridor, 0 for facade and rings",
+                angle_key("pattern.pitch_deg", between(-90, 80), pattern(&PatternSettings::pitch),
+                          "Pitch of the tilted grids of oblique, the rows of facade and corridor, "
+                          "and rings. Negative is down. The default is changed to the nearest "
+                          "pitch that gimbal and limits allow.")),
   };
 }
 

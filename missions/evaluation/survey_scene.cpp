@@ -172,7 +172,8 @@ bool SurveyScene::is_reachable(const Vector3d& position) const {
   });
 }
 
-geometry::View SurveyScene::first_view(std::uint64_t seed) const {
+geometry::View SurveyScene::first_view(std::uint64_t seed,
+                                       const survey::PlannerOptions& planner) const {
   const session::StartOptions& begins = options_.survey.start;
   const std::vector<geometry::View> initial_pattern = session::initial_pattern_views(begins, seed);
   if (!initial_pattern.empty()) return initial_pattern.front();
@@ -185,6 +186,7 @@ geometry::View SurveyScene::first_view(std::uint64_t seed) const {
                     "evaluation.passage_radius");
   }
 
+  if (const auto view = first_pattern_view(planner)) return *view;
   const survey::ViewLimits& limits = options_.survey.planner.limits;
   geometry::RandomNumbers random(seed);
   constexpr int max_attempts = 10'000;
@@ -201,6 +203,43 @@ geometry::View SurveyScene::first_view(std::uint64_t seed) const {
                   " m satisfies limits.ground_clearance, the gimbal's pitch limits, "
                   "evaluation.passage_radius, the site limits and flight.unknown_box; relax these "
                   "limits or set start.position");
+}
+
+std::optional<survey::patterns::PatternTarget> SurveyScene::pattern_target(
+    const survey::PlannerOptions& planner) const {
+  const auto* config = std::get_if<survey::patterns::PatternConfig>(&planner.method);
+  if (config == nullptr || config->target) return std::nullopt;
+  return survey::patterns::target_of(model_, planner.scene_box);
+}
+
+/// Returns the first view of the pattern from which a survey can begin. If all of them are in
+/// unknown space, returns the first one moved away from what it faces until it is outside. Nullopt
+/// without a pattern, and if no such view exists.
+std::optional<geometry::View> SurveyScene::first_pattern_view(
+    const survey::PlannerOptions& planner) const {
+  const auto* given = std::get_if<survey::patterns::PatternConfig>(&planner.method);
+  if (given == nullptr) return std::nullopt;
+  survey::patterns::PatternConfig config = *given;
+  if (!config.target) config.target = pattern_target(planner);
+  const survey::patterns::PlannedPattern plan = survey::patterns::plan_pattern(config);
+  const flight::FlightOptions& flight = options_.survey.flight;
+  const auto may_begin = [&](const geometry::View& view) {
+    return flight.is_in_known_airspace(view.position) && is_reachable(view.position);
+  };
+  for (const geometry::View& view : plan.views) {
+    for (const geometry::View& choice : survey::patterns::find_choices(config, view)) {
+      if (may_begin(choice)) return choice;
+    }
+  }
+  constexpr int steps = 40;
+  const double step = (config.view_distance + 2.0 * flight.unknown_box.sizes().maxCoeff()) / steps;
+  for (const geometry::View& view : plan.views) {
+    for (int i = 1; i <= steps; ++i) {
+      const geometry::View outside{view.position - i * step * view.direction, view.direction};
+      if (config.limits.allow(outside) && may_begin(outside)) return outside;
+    }
+  }
+  return std::nullopt;
 }
 
 Admissible SurveyScene::admissible() const {

@@ -43,10 +43,14 @@ class SurveyScene {
 
   const survey::ViewSphere& view_sphere() const { return view_sphere_; }
 
-  /// Returns the first view of a survey. It is taken from the initial pattern or the mission, or
-  /// drawn from the view sphere by `seed`. A drawn view is reachable, within the limits, and looks
-  /// at the sphere's centre. Throws Error{bad_config} if no such view exists.
-  geometry::View first_view(std::uint64_t seed) const;
+  /// Returns the first view of a survey. It is taken from the initial pattern, the mission or the
+  /// flown pattern, or drawn from the view sphere by `seed`. A drawn view is reachable, within the
+  /// limits, and looks at the sphere's centre. Throws Error{bad_config} if no such view exists.
+  geometry::View first_view(std::uint64_t seed) const {
+    return first_view(seed, options_.survey.planner);
+  }
+  /// Returns the first view of a survey by another planner of the same mission.
+  geometry::View first_view(std::uint64_t seed, const survey::PlannerOptions& planner) const;
 
   /// Returns 1 for each sample visible from an admissible position. The computation takes a second
   /// or more; the result is cached as for attainable(). It is invalid once `stop` is requested.
@@ -62,6 +66,11 @@ class SurveyScene {
 
   /// Returns the permitted sensor poses. The result refers to this object.
   Admissible admissible() const;
+
+  /// Returns the target of a pattern that specifies none: the horizontal convex hull and the
+  /// heights of the true surface within the scene box. Nullopt for other planners.
+  std::optional<survey::patterns::PatternTarget> pattern_target(
+      const survey::PlannerOptions& planner) const;
 
   /// Returns whether the sensor can reach a position, for example not inside closed rooms. The
   /// distance from surfaces is not tested.
@@ -79,6 +88,7 @@ class SurveyScene {
   const ReachableSpace& reachable() const;
   ReachableSpace reachable_space() const;
   const geometry::MeshDistance& truth() const;
+  std::optional<geometry::View> first_pattern_view(const survey::PlannerOptions& planner) const;
   bool has_line_of_sight(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const;
 
   SimulationOptions options_;

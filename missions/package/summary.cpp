@@ -83,6 +83,19 @@ Json surface_summary(const session::SurveyRecord& record, const CoverageFigures&
                       record.estimate ? "planner" : "simulator");
 }
 
+/// Returns the numbers of a pattern's views and the positions that were not flown.
+Json pattern_summary(const survey::PatternRecord& pattern) {
+  Json dropped = Json::array();
+  for (const geometry::View& view : pattern.dropped) {
+    dropped.push_back(
+        {{"position", to_json(view.position)}, {"direction", to_json(view.direction)}});
+  }
+  return {{"planned", pattern.planned},
+          {"flown", pattern.flown},
+          {"moved", pattern.moved},
+          {"dropped", dropped}};
+}
+
 bool has_target(const scene::SceneOptions& scene) {
   return scene.priors &&
          std::ranges::any_of(scene.priors->sources, [](const site_data::Source& source) {
@@ -232,6 +245,7 @@ std::string summary_json(const config::MissionSetup& setup, const session::Surve
       {"distance_m", record.distance()},
       {"estimate", estimate_summary(record, coverage, setup.survey().planner.resolution_radius)},
       {"surface", surface_summary(record, coverage)}};
+  if (record.pattern) summary["pattern"] = pattern_summary(*record.pattern);
   if (has_target(setup.scene())) {
     summary["targets"] = targets_json(target_coverage(
         setup.scene(), setup.evaluation().registration_distance, record.cloud.positions));

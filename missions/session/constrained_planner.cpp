@@ -13,8 +13,9 @@ namespace {
 /// 40 m.
 constexpr std::size_t surface_targets = 6000;
 
-/// Copies the data that only planners with coverage estimates provide.
+/// Copies the data that only planners with coverage estimates, or with patterns, provide.
 void record_estimate(const survey::Planner& planner, SurveyRecord& record) {
+  record.pattern = planner.pattern();
   const survey::CoverageEstimator* const estimator = planner.estimator();
   if (estimator == nullptr) return;
   record.estimate = estimator->estimate();

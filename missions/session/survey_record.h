@@ -50,6 +50,9 @@ struct SurveyRecord {
   /// Completion rule of the planner, see CoverageEstimator::stop_rule(); empty for other planners.
   std::string stop_rule{};
 
+  /// Views of the flown pattern; otherwise empty.
+  std::optional<survey::PatternRecord> pattern{};
+
   bool is_complete() const { return stop_reason == survey::StopReason::complete; }
   double coverage() const { return views.empty() ? 0.0 : views.back().coverage; }
   double distance() const { return views.empty() ? 0.0 : views.back().surveyed.distance; }

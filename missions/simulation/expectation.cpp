@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
+#include <variant>
 #include <vector>
 
 #include "flight/motion/motion.h"
@@ -115,11 +117,12 @@ double seconds_since(std::chrono::steady_clock::time_point begun) {
 
 ViewTimes times_of_a_view(const evaluation::SimulationOptions& options,
                           const evaluation::SurveyScene& scene, const session::RunOptions& run) {
-  const auto planner = survey::make_planner(options.survey.planner,
-                                            {.seed = run.seed,
-                                             .threads = run.threads,
-                                             .sphere = scene.view_sphere(),
-                                             .true_scene_admits = scene.admissible().allows});
+  const auto planner = survey::make_planner(
+      options.survey.planner, {.seed = run.seed,
+                               .threads = run.threads,
+                               .sphere = scene.view_sphere(),
+                               .true_scene_admits = scene.admissible().allows,
+                               .pattern_target = scene.pattern_target(options.survey.planner)});
   const sim::SurveySensor sensor(options.sensor, run.seed);
   ViewTimes times;
   const auto begun = std::chrono::steady_clock::now();
@@ -136,6 +139,19 @@ ViewTimes times_of_a_view(const evaluation::SimulationOptions& options,
   return times;
 }
 
+/// Returns the number of views of fixed sets and patterns, or nullopt for planners.
+std::optional<std::size_t> count_fixed_views(const survey::PlannerOptions& planner,
+                                             const evaluation::SurveyScene& scene) {
+  if (const auto* set = std::get_if<survey::fixed_views::FixedViewsConfig>(&planner.method)) {
+    return set->settings.views;
+  }
+  const auto* given = std::get_if<survey::patterns::PatternConfig>(&planner.method);
+  if (given == nullptr) return std::nullopt;
+  survey::patterns::PatternConfig pattern = *given;
+  if (!pattern.target) pattern.target = scene.pattern_target(planner);
+  return survey::patterns::plan_pattern(pattern).views.size();
+}
+
 }  // namespace
 
 Expectation expectation(const evaluation::SimulationOptions& options,
@@ -143,11 +159,11 @@ Expectation expectation(const evaluation::SimulationOptions& options,
   const session::SurveyOptions& asked = options.survey;
   const std::vector<View> known = known_cover(options, scene, run.seed, run.threads, few);
   double limit = static_cast<double>(asked.limits.max_views);
-  const auto* fixed = std::get_if<survey::fixed_views::FixedViewsConfig>(&asked.planner.method);
-  if (fixed != nullptr) limit = std::min(limit, static_cast<double>(fixed->settings.views));
+  const std::optional<std::size_t> fixed = count_fixed_views(asked.planner, scene);
+  if (fixed) limit = std::min(limit, static_cast<double>(*fixed));
   const auto count = static_cast<double>(known.size());
-  const bool has_view_limit = survey::find_title(asked.planner.name).metric.has_value() ||
-                              fixed != nullptr || survey::is_pb_nbv(asked.planner.name);
+  const bool has_view_limit = survey::find_title(asked.planner.name).metric.has_value() || fixed ||
+                              survey::is_pb_nbv(asked.planner.name);
   const Share share = find_view_ratio(asked.planner.name);
   const double min = has_view_limit ? limit : std::min(limit, std::round(share.min * count));
   const double max = has_view_limit ? limit : std::min(limit, std::round(share.max * count));

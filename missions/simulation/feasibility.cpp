@@ -13,6 +13,7 @@
 #include "missions/evaluation/coverage.h"
 #include "missions/session/survey_flight.h"
 #include "sim/sensors/survey_sensor.h"
+#include "survey/planners/planner_names.h"
 
 namespace skycap::missions::simulation {
 namespace {
@@ -199,7 +200,9 @@ class Inspection {
       const bool sees = std::ranges::any_of(scan.points, [&](const Vector3f& point) {
         return !box || box->contains(point.cast<double>());
       });
-      if (!sees) {
+      // The corner of a grid need not see the target.
+      const bool is_pattern = survey::pattern_of(options_.survey.planner.name).has_value();
+      if (!sees && !is_pattern) {
         problem("the first scan contains no point of the scene; start from a view that sees it");
       } else if (options_.survey.flight.has_vehicle()) {
         const session::SurveyFlight session_flight(options_.survey.flight, first, run_.threads);

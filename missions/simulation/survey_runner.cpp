@@ -59,12 +59,14 @@ session::SurveyRecord run_survey(const evaluation::SimulationOptions& options,
                                  const std::function<void(const session::EvaluatedView&)>& report,
                                  SurveyJournal* journal) {
   MountedSensor sensor(options, seed);
-  const geometry::View first_view = scene.first_view(seed);
-  session::ConstrainedPlanner guided(options.survey, first_view,
-                                     {.seed = seed,
-                                      .threads = threads,
-                                      .sphere = scene.view_sphere(),
-                                      .true_scene_admits = scene.admissible().allows});
+  const geometry::View first_view = scene.first_view(seed, options.survey.planner);
+  session::ConstrainedPlanner guided(
+      options.survey, first_view,
+      {.seed = seed,
+       .threads = threads,
+       .sphere = scene.view_sphere(),
+       .true_scene_admits = scene.admissible().allows,
+       .pattern_target = scene.pattern_target(options.survey.planner)});
   evaluation::CoverageMeter meter(scene.samples().points, options.evaluation.registration_distance);
   session::SurveyRecord record;
   record.seed = seed;

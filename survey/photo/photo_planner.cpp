@@ -197,7 +197,7 @@ class Planner {
       if (photos.is_too_large) {
         throw Error(ErrorKind::bad_config,
                     "the pattern " + std::string(to_string(*options_.flown_pattern)) +
-                        " has more than " + std::to_string(pattern_options().max_photos) +
+                        " has more than " + std::to_string(pattern_options().max_views) +
                         " photos; raise photo.gsd or divide the target");
       }
       candidates = std::move(photos.views);
@@ -533,8 +533,7 @@ class Planner {
       PatternPhotos photos = make_photos(pattern);
       if (photos.is_too_large) {
         result_.warnings.push_back("the pattern " + std::string(to_string(pattern)) +
-                                   " has more than " +
-                                   std::to_string(pattern_options().max_photos) +
+                                   " has more than " + std::to_string(pattern_options().max_views) +
                                    " photos and is not compared with the plan");
         continue;
       }

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string_view>
 
+#include "survey/patterns/patterns.h"
 #include "survey/volumetric/volumetric_config.h"
 
 namespace skycap::survey {
@@ -26,7 +27,13 @@ enum class PlannerName {
   pb_nbv_released,  ///< PB-NBV as in the released code
   uniform,          ///< fixed views, evenly distributed: no planning
   random,           ///< fixed views, independently distributed: no planning
-  external,         ///< planner of a user
+  nadir,            ///< standard patterns: no planning
+  oblique,
+  dome,
+  facade,
+  rings,
+  corridor,
+  external,  ///< planner of a user
 };
 
 struct PlannerTitle {
@@ -38,10 +45,10 @@ struct PlannerTitle {
 };
 
 /// Sorted in the order of PlannerName.
-inline constexpr std::array<PlannerTitle, 15> planner_titles = [] {
+inline constexpr std::array<PlannerTitle, 21> planner_titles = [] {
   using enum PlannerName;
   using enum volumetric::VolumetricMetric;
-  return std::array<PlannerTitle, 15>{{{see_plus_plus, "see++", "SEE++"},
+  return std::array<PlannerTitle, 21>{{{see_plus_plus, "see++", "SEE++"},
                                        {see, "see", "SEE"},
                                        {skycap, "skycap", "Skycap"},
                                        {rsv, "rsv", "RSV", rear_side_voxel},
@@ -55,6 +62,12 @@ inline constexpr std::array<PlannerTitle, 15> planner_titles = [] {
                                        {pb_nbv_released, "pb-nbv-released", "PB-NBV (released)"},
                                        {uniform, "uniform", "Uniform"},
                                        {random, "random", "Random"},
+                                       {nadir, "nadir", "Nadir"},
+                                       {oblique, "oblique", "Oblique"},
+                                       {dome, "dome", "Dome"},
+                                       {facade, "facade", "Facade"},
+                                       {rings, "rings", "Rings"},
+                                       {corridor, "corridor", "Corridor"},
                                        {external, "external", "External"}}};
 }();
 
@@ -76,6 +89,13 @@ constexpr bool has_fixed_views(PlannerName name) {
 
 constexpr bool is_pb_nbv(PlannerName name) {
   return name == PlannerName::pb_nbv || name == PlannerName::pb_nbv_released;
+}
+
+/// Returns the pattern that replaces the planner, or nullopt for other planners.
+constexpr std::optional<patterns::Pattern> pattern_of(PlannerName name) {
+  if (name < PlannerName::nadir || name > PlannerName::corridor) return std::nullopt;
+  return static_cast<patterns::Pattern>(static_cast<int>(name) -
+                                        static_cast<int>(PlannerName::nadir));
 }
 
 /// Returns the planner with this name in files, or nullopt.

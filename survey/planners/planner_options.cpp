@@ -8,6 +8,7 @@
 #include "survey/external/external_planner.h"
 #include "survey/fixed_views/fixed_view_planner.h"
 #include "survey/limited_planner.h"
+#include "survey/patterns/pattern_planner.h"
 #include "survey/pb_nbv/pb_nbv_planner.h"
 #include "survey/see/see.h"
 #include "survey/surfel/surfel_planner.h"
@@ -65,6 +66,11 @@ struct Maker {
     config.seed = run.seed ^ candidates_stream;
     config.admits = run.true_scene_admits;
     return limited(std::make_unique<fixed_views::FixedViewPlanner>(config), options.limits);
+  }
+
+  std::unique_ptr<Planner> operator()(patterns::PatternConfig config) const {
+    if (!config.target) config.target = run.pattern_target;
+    return limited(std::make_unique<patterns::PatternPlanner>(config), options.limits);
   }
 
   std::unique_ptr<Planner> operator()(external::ExternalConfig config) const {

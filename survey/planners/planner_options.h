@@ -13,6 +13,7 @@
 #include "geometry/pose/camera.h"
 #include "survey/external/external_planner.h"
 #include "survey/fixed_views/fixed_views_config.h"
+#include "survey/patterns/pattern_config.h"
 #include "survey/pb_nbv/pb_nbv_config.h"
 #include "survey/planner.h"
 #include "survey/planners/planner_names.h"
@@ -46,7 +47,8 @@ struct PlannerOptions {
   /// Settings of the planner `name`. Seed, threads, prior surface and a sphere that the mission
   /// does not set are completed by make_planner().
   std::variant<see::SeeConfig, surfel::SurfelConfig, volumetric::VolumetricConfig,
-               pb_nbv::PbNbvConfig, fixed_views::FixedViewsConfig, external::ExternalConfig>
+               pb_nbv::PbNbvConfig, fixed_views::FixedViewsConfig, patterns::PatternConfig,
+               external::ExternalConfig>
       method;
 
   /// Returns the prior surface of the targets. Called on demand; may be empty.
@@ -66,6 +68,8 @@ struct PlannerRun {
   /// Returns whether the true scene admits a view. Only for fixed views, which are no planner and
   /// are granted this knowledge; empty: unknown, as in live surveys.
   std::function<bool(const geometry::View&)> true_scene_admits{};
+  /// Target of patterns whose settings have none, granted by a simulated scene.
+  std::optional<patterns::PatternTarget> pattern_target{};
 };
 
 /// Creates the planner and applies the limits. Throws Error{bad_config} for a volumetric planner

@@ -54,16 +54,17 @@ Modules architecture() {
   add("survey", {});
   add("survey/external", {"survey"});
   add("survey/fixed_views", {"survey"});
+  add("survey/patterns", {"survey"});
   add("survey/pb_nbv", {"survey"});
   add("survey/inspection", {"survey"});
-  add("survey/photo", {"survey"});
+  add("survey/photo", {"survey", "survey/patterns"});
   add("survey/see", {"survey"});
   add("survey/surfel/raster", {"survey"});
   add("survey/surfel", {"survey", "survey/surfel/raster"});
   add("survey/volumetric", {"survey"});
   add("survey/planners",
-      {"survey", "survey/external", "survey/fixed_views", "survey/pb_nbv", "survey/see",
-       "survey/surfel", "survey/surfel/raster", "survey/volumetric"});
+      {"survey", "survey/external", "survey/fixed_views", "survey/patterns", "survey/pb_nbv",
+       "survey/see", "survey/surfel", "survey/surfel/raster", "survey/volumetric"});
 
   add("flight/clearance", {});
   add("flight/autopilot", {});
@@ -195,8 +196,12 @@ TEST(Sources, DrawRandomNumbersInDefinedOrder) {
 /// Meshes are ground truth. Measured points are not.
 TEST(Modules, HideGroundTruthFromPlanners) {
   for (const SourceFile& source : testing_support::not_empty(product())) {
-    // Photo planning uses prior data, which are meshes.
-    if (!source.path.starts_with("survey/") || source.path.starts_with("survey/photo/")) continue;
+    // Photo planning and patterns use prior data, which are meshes. Simulated scenes grant patterns
+    // their outline.
+    if (!source.path.starts_with("survey/") || source.path.starts_with("survey/photo/") ||
+        source.path.starts_with("survey/patterns/")) {
+      continue;
+    }
     EXPECT_THAT(source.own, testing::Not(testing::Contains(HasSubstr("surfaces/mesh"))))
         << source.path;
   }

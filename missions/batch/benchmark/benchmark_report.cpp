@@ -13,6 +13,7 @@
 #include "missions/batch/benchmark/markdown_table.h"
 #include "missions/batch/benchmark/methods.h"
 #include "missions/batch/benchmark/paper_results.h"
+#include "missions/batch/benchmark/pattern_comparison.h"
 #include "missions/batch/benchmark/protocol_g.h"
 #include "missions/batch/benchmark/uniform_comparison.h"
 #include "missions/support/json_text.h"
@@ -680,7 +681,7 @@ std::string report_markdown(const std::vector<BenchmarkCell>& all, const std::st
                      "brackets. The symbol ± precedes the half width of the 95% confidence "
                      "interval of the mean, and × precedes the ratio to the paper. sd: standard "
                      "deviation over the trials. Definitions: docs/howto/compare-planners.md.\n" +
-                     uniform_markdown(all) +
+                     uniform_markdown(all) + pattern_markdown(cells) +
                      "\n"
                      "## Table 1\n"
                      "\n" +

@@ -42,6 +42,7 @@ KeyValue value_for(const config::Key& key, bool is_second) {
     case config::KeyType::number:
       return is_second ? 0.25 : 0.5;
     case config::KeyType::polygon:
+    case config::KeyType::line:
       return std::vector<Eigen::Vector2d>{{0, 0}, {9, 0}, {0, is_second ? 9.5 : 4.5}};
     case config::KeyType::volumes:
       return std::vector<geometry::Prism>{
@@ -224,6 +225,16 @@ constexpr KeyField fields[] = {
     {"pb_nbv.working_distance",
      [](const Document& d) { return value(d.planner.pb_nbv.working_distance); }},
     {"pb_nbv.region", [](const Document& d) { return value(d.planner.pb_nbv.region); }},
+    {"pattern.polygon", [](const Document& d) { return value(d.planner.patterns.polygon); }},
+    {"pattern.line", [](const Document& d) { return value(d.planner.patterns.line); }},
+    {"pattern.width", [](const Document& d) { return value(d.planner.patterns.width); }},
+    {"pattern.base", [](const Document& d) { return value(d.planner.patterns.base); }},
+    {"pattern.top", [](const Document& d) { return value(d.planner.patterns.top); }},
+    {"pattern.forward_overlap",
+     [](const Document& d) { return value(d.planner.patterns.forward_overlap); }},
+    {"pattern.side_overlap",
+     [](const Document& d) { return value(d.planner.patterns.side_overlap); }},
+    {"pattern.pitch_deg", [](const Document& d) { return degrees(d.planner.patterns.pitch); }},
     {"planner.preset", [](const Document& d) { return value(d.planner.preset); }},
     {"planner.goal", [](const Document& d) { return value(d.planner.goal); }},
     {"planner.density", [](const Document& d) { return value(d.planner.sampling.density); }},

@@ -121,13 +121,6 @@ TEST_F(PatternPhotosOfABox, DropsPhotosThatAreNotFree) {
   EXPECT_GT(nadir.dropped, 0U);
 }
 
-TEST(Patterns, HaveNames) {
-  for (const Pattern pattern : {Pattern::nadir, Pattern::oblique, Pattern::dome, Pattern::facade}) {
-    EXPECT_EQ(pattern_named(to_string(pattern)), pattern);
-  }
-  EXPECT_FALSE(pattern_named("spiral"));
-}
-
 TEST_F(PatternPhotosOfABox, AreNotMadeAboveTheLimit) {
   add_box(target_, {0, 0, 0}, {50000, 40000, 30});
   for (const Pattern pattern : {Pattern::nadir, Pattern::oblique, Pattern::facade}) {
