@@ -77,6 +77,15 @@ void validate(const Mesh& mesh, unsigned threads) {
   }
 }
 
+std::vector<Eigen::Vector3d> triangle_corners(const Mesh& mesh) {
+  std::vector<Eigen::Vector3d> corners;
+  corners.reserve(3 * mesh.triangles.size());
+  for (const auto& triangle : mesh.triangles) {
+    for (const std::uint32_t v : triangle) corners.push_back(mesh.vertices[v]);
+  }
+  return corners;
+}
+
 Eigen::AlignedBox3d bounding_box(const Mesh& mesh, unsigned threads) {
   std::vector<Eigen::AlignedBox3d> boxes(count_blocks(mesh.triangles.size()));
   for_each_block(mesh.triangles.size(), threads,

@@ -25,6 +25,8 @@ void validate(const Mesh& mesh, unsigned threads = 1);
 
 /// Returns the smallest axis-aligned box around the vertices that triangles use.
 Eigen::AlignedBox3d bounding_box(const Mesh& mesh, unsigned threads = 1);
+/// Returns the three vertices of each triangle. Shared vertices are repeated.
+std::vector<Eigen::Vector3d> triangle_corners(const Mesh& mesh);
 
 double surface_area(const Mesh& mesh);
 

@@ -222,7 +222,7 @@ std::optional<survey::patterns::PatternTarget> pattern_target(const MissionDocum
   if (!document.scene.priors) return std::nullopt;
   const site_data::SitePriors& site = *document.scene.priors;
   const geometry::Mesh surfaces = make_surfaces(site, Role::target);
-  if (!surfaces.triangles.empty()) return target_of(surfaces);
+  if (!surfaces.triangles.empty()) return target_of(triangle_corners(surfaces));
   AlignedBox3d box;
   for (std::size_t i = 0; i < site.priors.size(); ++i) {
     if (site.sources[i].role == Role::target) box.extend(site.priors[i].box);

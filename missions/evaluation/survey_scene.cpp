@@ -209,7 +209,12 @@ std::optional<survey::patterns::PatternTarget> SurveyScene::pattern_target(
     const survey::PlannerOptions& planner) const {
   const auto* config = std::get_if<survey::patterns::PatternConfig>(&planner.method);
   if (config == nullptr || config->target) return std::nullopt;
-  return survey::patterns::target_of(model_, planner.scene_box);
+  const std::vector<Eigen::Vector3d> corners = geometry::triangle_corners(model_);
+  std::vector<Eigen::Vector3d> inside = corners;
+  std::erase_if(inside, [&](const Eigen::Vector3d& corner) {
+    return planner.scene_box && !planner.scene_box->contains(corner);
+  });
+  return survey::patterns::target_of(inside.empty() ? corners : inside);
 }
 
 /// Returns the first view of the pattern from which a survey can begin. If all of them are in

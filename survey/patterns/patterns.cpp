@@ -449,23 +449,14 @@ std::string pattern_names() {
   return list;
 }
 
-PatternTarget target_of(const geometry::Mesh& surface,
-                        const std::optional<Eigen::AlignedBox3d>& limits) {
-  if (limits) {
-    geometry::Mesh inside;
-    for (const Eigen::Vector3d& vertex : surface.vertices) {
-      if (!limits->contains(vertex)) continue;
-      inside.vertices.push_back(vertex);
-      const auto index = static_cast<std::uint32_t>(inside.vertices.size() - 1);
-      inside.triangles.push_back({index, index, index});
-    }
-    if (!inside.vertices.empty()) return target_of(inside);
+PatternTarget target_of(const std::vector<Vector3d>& points) {
+  Eigen::AlignedBox3d box;
+  std::vector<Vector2d> plan;
+  for (const Vector3d& point : points) {
+    box.extend(point);
+    plan.emplace_back(point.head<2>());
   }
-  std::vector<Vector2d> points;
-  for (const auto& triangle : surface.triangles) {
-    for (const std::uint32_t v : triangle) points.emplace_back(surface.vertices[v].head<2>());
-  }
-  return {bounding_box(surface), convex_hull(std::move(points)), {}, {}};
+  return {box, convex_hull(std::move(plan)), {}, {}};
 }
 
 PatternTarget target_of(const Eigen::AlignedBox3d& box) {

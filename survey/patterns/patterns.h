@@ -14,7 +14,6 @@
 #include <Eigen/Geometry>
 
 #include "geometry/pose/pose.h"
-#include "geometry/surfaces/mesh.h"
 
 namespace skycap::survey::patterns {
 
@@ -39,10 +38,8 @@ struct PatternTarget {
   double width = 0.0;                    ///< Width of the structure along `line` [m].
 };
 
-/// Returns the target with the extent of a surface. Vertices outside `limits` are ignored if any
-/// vertex is inside.
-PatternTarget target_of(const geometry::Mesh& surface,
-                        const std::optional<Eigen::AlignedBox3d>& limits = {});
+/// Returns the target with the extent of points.
+PatternTarget target_of(const std::vector<Eigen::Vector3d>& points);
 /// Returns the target with the extent of a box.
 PatternTarget target_of(const Eigen::AlignedBox3d& box);
 /// Returns the target over a simple polygon between two heights.

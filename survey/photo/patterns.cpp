@@ -7,7 +7,8 @@ PatternPhotos pattern_photos(Pattern pattern, const geometry::PhotoCamera& camer
                              const PhotoSpace& space) {
   const Eigen::Vector2d footprint = options.view_distance / camera.focal_length_px() *
                                     Eigen::Vector2d(camera.width(), camera.height());
-  return patterns::pattern_views(pattern, footprint, patterns::target_of(target), options,
+  return patterns::pattern_views(pattern, footprint,
+                                 patterns::target_of(geometry::triangle_corners(target)), options,
                                  [&](const geometry::View& view) { return space.allows(view); });
 }
 

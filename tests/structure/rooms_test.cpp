@@ -196,12 +196,8 @@ TEST(Sources, DrawRandomNumbersInDefinedOrder) {
 /// Meshes are ground truth. Measured points are not.
 TEST(Modules, HideGroundTruthFromPlanners) {
   for (const SourceFile& source : testing_support::not_empty(product())) {
-    // Photo planning and patterns use prior data, which are meshes. Simulated scenes grant patterns
-    // their outline.
-    if (!source.path.starts_with("survey/") || source.path.starts_with("survey/photo/") ||
-        source.path.starts_with("survey/patterns/")) {
-      continue;
-    }
+    // Photo planning uses prior data, which are meshes.
+    if (!source.path.starts_with("survey/") || source.path.starts_with("survey/photo/")) continue;
     EXPECT_THAT(source.own, testing::Not(testing::Contains(HasSubstr("surfaces/mesh"))))
         << source.path;
   }
