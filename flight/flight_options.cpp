@@ -61,6 +61,10 @@ Vehicle FlightOptions::vehicle_for(Vehicle own, AutopilotType autopilot) const {
   own.autopilot = autopilot;
   own.mode = other->mode;
   if (autopilot == AutopilotType::dji) own.wpml = other->wpml;
+  if (own.needs_waypoint_per_photo()) {  // The limits of an app do not apply to autopilots.
+    own.app = MissionApp::pilot;
+    own.max_waypoints = other->max_waypoints;
+  }
   return own;
 }
 

@@ -117,8 +117,9 @@ class WpmlChecker {
     if (!is_template_ && (is_strict_ || !child_text(config, "globalRTHHeight").empty())) {
       route.return_height = require_number(config, "globalRTHHeight", 2, 1500);
     }
+    // DJI documents all codes except 68, which DJI Fly writes for consumer drones.
     require_one_of(config.child("wpml:droneInfo"), "droneEnumValue",
-                   {"60", "67", "77", "89", "91", "99", "100", "103"});
+                   {"60", "67", "68", "77", "89", "91", "99", "100", "103"});
     require_number(config.child("wpml:droneInfo"), "droneSubEnumValue", 0, 3);
     require_number(config.child("wpml:payloadInfo"), "payloadEnumValue", 0, 99999);
     require_number(config.child("wpml:payloadInfo"), "payloadPositionIndex", 0, 2);

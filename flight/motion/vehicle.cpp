@@ -7,6 +7,17 @@
 
 namespace skycap::flight {
 
+const char* to_string(MissionApp app) {
+  switch (app) {
+    case MissionApp::fly:
+      return "DJI Fly";
+    case MissionApp::litchi:
+      return "Litchi";
+    default:
+      return "DJI Pilot 2";
+  }
+}
+
 void Vehicle::validate() const {
   const auto require = [&](bool holds, const std::string& field, double value,
                            const std::string& right) {

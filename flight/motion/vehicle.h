@@ -11,6 +11,12 @@ namespace skycap::flight {
 /// Dialect of mission items that an autopilot supports.
 enum class AutopilotType { px4, ardupilot, dji };
 
+/// App that flies the missions of a DJI vehicle. The apps of consumer drones (fly, litchi) accept a
+/// small number of waypoints and need one waypoint per photo.
+enum class MissionApp { pilot, fly, litchi };
+/// Returns the name of the app: "DJI Pilot 2", "DJI Fly" or "Litchi".
+const char* to_string(MissionApp app);
+
 /// Codes of vehicle and payload in DJI WPML files.
 struct WpmlCodes {
   int drone = 0;
@@ -24,6 +30,7 @@ struct WpmlCodes {
 struct Vehicle {
   std::string name;
   AutopilotType autopilot = AutopilotType::px4;
+  MissionApp app = MissionApp::pilot;  ///< Only for DJI vehicles.
   WpmlCodes wpml;
   MissionMode mode;  ///< How the autopilot flies missions.
 
@@ -47,7 +54,11 @@ struct Vehicle {
   double drag_area = 0.03;       ///< Drag coefficient times frontal area [m^2].
   double energy_error = 0.1;     ///< Maximum relative excess of actual over predicted energy.
 
-  int max_waypoints = 500;  ///< Maximum number of waypoints per mission file.
+  /// Maximum number of waypoints (DJI vehicles) or mission items per mission file.
+  int max_waypoints = 500;
+
+  /// Returns true if the app needs a waypoint, with a stop, for each photo.
+  bool needs_waypoint_per_photo() const { return app != MissionApp::pilot; }
 
   /// Throws Error{bad_config} naming the first field outside its interval.
   void validate() const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -23,11 +24,20 @@ std::size_t max_capture_points(const Vehicle& vehicle, bool are_passed) {
   return static_cast<std::size_t>(std::max(1, (vehicle.max_waypoints - items_per_sortie) / items));
 }
 
-LegCost compute_cost(const Leg& leg) { return {leg.duration, leg.energy, leg.emergency}; }
+std::size_t max_sortie_waypoints(const Vehicle& vehicle) {
+  if (vehicle.autopilot != AutopilotType::dji) return std::numeric_limits<std::size_t>::max();
+  return static_cast<std::size_t>(vehicle.max_waypoints);
+}
+
+LegCost compute_cost(const Leg& leg) {
+  const std::size_t corners = std::max<std::size_t>(leg.points.size(), 2) - 2;
+  return {leg.duration, leg.energy, leg.emergency, corners};
+}
 
 LegCost in_turn(const LegCost& first, const LegCost& second) {
   return {first.time + second.time, first.energy + second.energy,
-          std::max(first.emergency, first.energy + second.emergency)};
+          std::max(first.emergency, first.energy + second.emergency),
+          first.waypoints + second.waypoints};
 }
 
 Leg LegCosts::leg(VerifiedPath path, const CapturePoint* from, const CapturePoint* to) const {
@@ -70,12 +80,12 @@ double LegCosts::aimed_time(double leg, const CapturePoint* from, const CaptureP
 
 LegCost LegCosts::takeoff_cost(double climb) const {
   return {motion_.takeoff_time(climb) + corner_hold,
-          motion_.takeoff_energy(climb) + motion_.hover_energy(corner_hold)};
+          motion_.takeoff_energy(climb) + motion_.hover_energy(corner_hold), 0.0, 1};
 }
 
 LegCost LegCosts::landing_cost(double climb) const {
   const double time = corner_hold + motion_.landing_time(climb);
-  return {time, motion_.hover_energy(time)};
+  return {time, motion_.hover_energy(time), 0.0, 1};
 }
 
 LegCost LegCosts::capture_cost(const CapturePoint& capture_point) const {
@@ -83,7 +93,7 @@ LegCost LegCosts::capture_cost(const CapturePoint& capture_point) const {
                           ? 0.0
                           : std::max(corner_hold, capture_point.hold) + capture_point.hold_after;
   const double energy = motion_.hover_energy(hold);
-  return {hold, energy, energy + return_cost(capture_point.view.position)};
+  return {hold, energy, energy + return_cost(capture_point.view.position), 1};
 }
 
 double LegCosts::return_cost(const Vector3d& position) const {

@@ -23,6 +23,10 @@ LegCost in_turn(const LegCost& first, const LegCost& second);
 /// Waypoints that are passed without a stop need fewer items.
 std::size_t max_capture_points(const Vehicle& vehicle, bool are_passed = false);
 
+/// Returns the maximum number of waypoints per sortie, including the two above the pad and the
+/// corners. Unlimited for vehicles whose limit is on mission items.
+std::size_t max_sortie_waypoints(const Vehicle& vehicle);
+
 /// Cost model of legs and stops. Keeps references to the constructor arguments.
 class LegCosts {
  public:

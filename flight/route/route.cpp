@@ -82,7 +82,8 @@ class RoutePlanner {
     if (route_.sorties.empty() && !route_.capture_points.empty()) {
       throw Error(
           ErrorKind::bad_config,
-          "the route cannot be divided into sorties of one battery each; lower flight.reserve");
+          "the route cannot be divided into sorties of one battery each within the vehicle's "
+          "max_waypoints; lower flight.reserve");
     }
   }
 
@@ -98,7 +99,10 @@ class RoutePlanner {
     problem.energy_per_sortie = plannable_energy(legs_.motion());
     const bool are_passed = std::ranges::any_of(route_.capture_points, &CapturePoint::is_passed);
     std::size_t& most = problem.capture_points_per_sortie;
-    most = max_capture_points(legs_.motion().vehicle(), are_passed);
+    const Vehicle& vehicle = legs_.motion().vehicle();
+    problem.waypoints_per_sortie = max_sortie_waypoints(vehicle);
+    most = vehicle.needs_waypoint_per_photo() ? problem.waypoints_per_sortie
+                                              : max_capture_points(vehicle, are_passed);
     if (are_passed && most > 1) --most;  // A sortie that resumes has one in addition.
 
     const SortieSplit split = split_into_sorties(problem);
@@ -118,7 +122,10 @@ class RoutePlanner {
 
   LegCost out_cost(std::size_t capture_point) const {
     if (!resumes_before(capture_point)) return legs_.out_cost(capture_point);
-    return in_turn(legs_.out_cost(capture_point - 1), compute_cost(route_.legs[capture_point - 1]));
+    LegCost cost =
+        in_turn(legs_.out_cost(capture_point - 1), compute_cost(route_.legs[capture_point - 1]));
+    ++cost.waypoints;  // the capture point at which the sortie resumes
+    return cost;
   }
 
   /// Returns true if the path of a sortie was changed.

@@ -156,6 +156,10 @@ std::string RouteLegs::range_error(const CapturePoint& capture_point, const Ends
   const LegCost there = in_turn(takeoff_cost_, compute_cost(ends.out));
   const LegCost home = in_turn(compute_cost(ends.back), landing_cost_);
   const LegCost total = in_turn(in_turn(there, costs_.capture_cost(capture_point)), home);
+  if (const std::size_t most = max_sortie_waypoints(motion_.vehicle()); total.waypoints > most) {
+    return "the flight to it and back requires " + std::to_string(total.waypoints) +
+           " waypoints; the vehicle accepts " + std::to_string(most);
+  }
   const double needed = std::max(total.energy, total.emergency);
   const double held = plannable_energy(motion_), longest = options_.conditions.longest_flight;
   if (needed <= held) return "";

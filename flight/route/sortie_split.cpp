@@ -64,18 +64,22 @@ void extend(const SplitProblem& problem, std::uint32_t pad_number, std::size_t f
       std::min(problem.capture_point.size(), first + problem.capture_points_per_sortie);
   double time = pad.out[first].time, energy = pad.out[first].energy;
   double worst = pad.out[first].emergency;
+  std::size_t waypoints = pad.out[first].waypoints;
   const auto add = [&](const Cost& part) {
     worst = std::max(worst, energy + part.emergency);
     time += part.time;
     energy += part.energy;
+    waypoints += part.waypoints;
   };
   for (std::size_t last = first; last < end; ++last) {
     if (last > first) add(problem.leg[last - 1]);
     add(problem.capture_point[last]);
     if (std::max(energy, worst) > problem.energy_per_sortie) break;
+    if (waypoints > problem.waypoints_per_sortie) break;
     // The return from here must be affordable, otherwise the vehicle must not fly this far.
     const Cost& back = pad.back[last];
     if (energy + std::max(back.energy, back.emergency) > problem.energy_per_sortie) break;
+    if (waypoints + back.waypoints > problem.waypoints_per_sortie) continue;
     const double total = best.time[first] + time + back.time;
     if (total >= best.time[last + 1]) continue;
     best.time[last + 1] = total;

@@ -19,6 +19,7 @@ struct SplitProblem {
     /// Energy required at the start of the part so that, from each of its points, the autopilot can
     /// still return [J].
     double emergency = 0.0;
+    std::size_t waypoints = 0;  ///< Number of waypoints in a mission file.
   };
   struct Pad {
     std::vector<Cost> out;   ///< Pad to waypoint, including take-off.
@@ -29,6 +30,7 @@ struct SplitProblem {
   std::vector<Cost> leg;            ///< Legs from waypoint i to waypoint i + 1.
   double energy_per_sortie = 0.0;
   std::size_t capture_points_per_sortie = 0;
+  std::size_t waypoints_per_sortie = std::numeric_limits<std::size_t>::max();
 };
 
 struct SortieRange {
@@ -45,7 +47,8 @@ struct SortieSplit {
 
 /// Returns the fastest split in the given order, with the best pad for each sortie (Beasley 1983,
 /// split of a giant tour). At every waypoint, the battery covers the energy used so far and the
-/// flight back, as well as the emergency energy of each part. Complexity: O(pads x waypoints x
+/// flight back, as well as the emergency energy of each part. A sortie with its corners has at most
+/// the maximum number of waypoints. Complexity: O(pads x waypoints x
 /// waypoints per sortie).
 SortieSplit split_into_sorties(const SplitProblem& problem);
 

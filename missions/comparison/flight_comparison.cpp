@@ -52,7 +52,7 @@ std::vector<std::filesystem::path> find_routes(const std::filesystem::path& fold
                     " is a mission of several vehicles; name the files of one vehicle with "
                     "--route");
   }
-  const flight::Format own = package::own_format(options.required_vehicle().autopilot);
+  const flight::Format own = package::own_format(options.required_vehicle());
   for (const flight::Format format : {own, flight::Format::csv}) {
     std::vector<std::filesystem::path> files;
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -245,7 +245,7 @@ package::SurveyMission plan_patch(const package::PackagedSurvey& survey,
                            make_patch_points(survey, views), survey.landing_surfaces, stop);
   mission.files = package::stage_flight(
       survey.name + " " + patch_stem, survey.flight, mission.route, survey.measured,
-      package::package_formats(survey.flight.required_vehicle().autopilot), folder, patch_stem);
+      package::package_formats(survey.flight.required_vehicle()), folder, patch_stem);
   return mission;
 }
 

@@ -82,6 +82,15 @@ class VehicleReader {
                                                   {"ardupilot", AutopilotType::ardupilot},
                                                   {"dji", AutopilotType::dji}});
     }
+    if (root_.has("app")) {
+      using flight::MissionApp;
+      if (vehicle_.autopilot != AutopilotType::dji) {
+        root_.fail_at("app", "requires dialect: dji");
+      }
+      vehicle_.app = root_.choice<MissionApp>(
+          "app",
+          {{"pilot", MissionApp::pilot}, {"fly", MissionApp::fly}, {"litchi", MissionApp::litchi}});
+    }
     if (vehicle_.autopilot == AutopilotType::dji || root_.has("wpml")) read_codes();
     read_numbers<Vehicle>(root_, vehicle_, vehicle_numbers);
     if (root_.has(position_error.key)) {  // optional, because descriptions of version 0.1 lack it

@@ -32,7 +32,7 @@ RowedSorties collect_sorties(const FleetMission& fleet, const std::vector<Varian
   const auto add = [&](std::size_t v, std::size_t variant, std::size_t i) {
     const flight::FlightOptions& own = fleet.members[v].flight;
     const flight::Route& route = variants[v][variant];
-    const flight::Format format = own_format(own.required_vehicle().autopilot);
+    const flight::Format format = own_format(own.required_vehicle());
     const std::string number = route.sorties.size() > 1 ? "-" + std::to_string(i + 1) : "";
     const std::string name = make_stem(v) + number;
     const flight::FlightPlan plan = flight_plan(route, i, name, own.site, own.rules());
@@ -157,10 +157,10 @@ void stage_fleet(const std::string& name, FleetMission& fleet,
   for (std::size_t v = 0; v < fleet.members.size(); ++v) {
     FleetMember& member = fleet.members[v];
     if (member.route.sorties.empty()) continue;
-    const flight::AutopilotType autopilot = member.flight.required_vehicle().autopilot;
-    const flight::Format own = own_format(autopilot);
+    const flight::Vehicle& vehicle = member.flight.required_vehicle();
+    const flight::Format own = own_format(vehicle);
     const std::span<const flight::Format> asked =
-        formats.empty() ? package_formats(autopilot) : formats;
+        formats.empty() ? package_formats(vehicle) : formats;
     std::vector<flight::Format> all(asked.begin(), asked.end());
     if (std::ranges::find(all, own) == all.end()) all.push_back(own);
     member.files =

@@ -25,6 +25,7 @@ using flight::Format;
 constexpr std::array mavlink_formats{Format::plan, Format::waypoints, Format::kml, Format::geojson,
                                      Format::csv};
 constexpr std::array dji_formats{Format::kmz, Format::kml, Format::geojson, Format::csv};
+constexpr std::array litchi_formats{Format::litchi, Format::kml, Format::geojson, Format::csv};
 
 /// Returns true for formats in the local frame, which do not require a georeference.
 bool is_local(Format format) {
@@ -241,7 +242,8 @@ class RouteFiles {
                                std::vector<std::string>& notes) const {
     const std::string name = stem_ + flight::format_info(format).extension;
     const bool is_fly_through = options_.style == flight::FlightStyle::pass;
-    if (flight::holds_photo_runs(format) && plan.photo) {
+    if (flight::holds_photo_runs(format) && plan.photo &&
+        !plan.vehicle.needs_waypoint_per_photo()) {
       flight::FlightPlan faster = flight::with_photo_runs(plan);
       const std::size_t photos = flight::photos_in_runs(faster);
       const auto minutes = [](const flight::FlightPlan& of) {
@@ -279,8 +281,9 @@ class RouteFiles {
 
 }  // namespace
 
-std::span<const Format> package_formats(AutopilotType autopilot) {
-  if (autopilot == AutopilotType::dji) return dji_formats;
+std::span<const Format> package_formats(const flight::Vehicle& vehicle) {
+  if (vehicle.app == flight::MissionApp::litchi) return litchi_formats;
+  if (vehicle.autopilot == AutopilotType::dji) return dji_formats;
   return mavlink_formats;
 }
 

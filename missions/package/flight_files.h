@@ -69,8 +69,9 @@ struct FlightFiles {
   std::vector<std::string> notes;  ///< Formats that were skipped or omit information, with reasons.
 };
 
-/// Returns the formats of a mission package: those of the autopilot, of maps and of other programs.
-std::span<const flight::Format> package_formats(flight::AutopilotType autopilot);
+/// Returns the formats of a mission package: those of the vehicle's autopilot or app, of maps and
+/// of other programs.
+std::span<const flight::Format> package_formats(const flight::Vehicle& vehicle);
 
 /// Stages the route of the mission `name` in each format. Several sorties are written to numbered
 /// files such as "mission-1.plan", with `stem` as the prefix. Each file is read back and verified.

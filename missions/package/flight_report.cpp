@@ -57,6 +57,20 @@ std::string image_motion_text(const SurveyMission& flight) {
   return text + fmt::format(" at {:.1f} m\n", distance);
 }
 
+/// Returns the limit of the vehicle's app, which divides the mission into sorties.
+std::string waypoint_limit_text(const flight::Route& route) {
+  if (!route.vehicle.needs_waypoint_per_photo() || route.sorties.empty()) return "";
+  std::string counts;
+  for (const flight::Sortie& sortie : route.sorties) {
+    counts += (counts.empty() ? "" : ", ") + std::to_string(sortie_points(route, sortie).size());
+  }
+  return fmt::format(
+      "  waypoints {} of at most {} per file ({}), one per photo; each sortie has its own "
+      "take-off, "
+      "verified returns and landing\n",
+      counts, route.vehicle.max_waypoints, to_string(route.vehicle.app));
+}
+
 }  // namespace
 
 std::string survey_flight_text(const flight::FlightOptions& options,
@@ -102,6 +116,7 @@ std::string flight_text(const SurveyMission& flight, bool is_verbose) {
       "position {:.2f} + tracking {:.2f} + map {:.2f} + margin {:.2f})\n",
       route.min_clearance, clearance.total(), clearance.vehicle_radius, clearance.position_error,
       clearance.tracking_error, clearance.map_error, clearance.margin);
+  text += waypoint_limit_text(route);
   text += fly_through_text(route);
   if (flight.replanned) text += replanned_text(*flight.replanned);
   text += landing_surfaces_text(route.options.landing_surfaces);

@@ -156,7 +156,7 @@ void stage_mission(const std::string& name, const flight::FlightOptions& options
   attempt(flight, [&] {
     const flight::MeasuredSpace& measured = *record.flight_record->measured;
     flight.files = stage_flight(name, options, flight.route, measured,
-                                package_formats(options.required_vehicle().autopilot), folder);
+                                package_formats(options.required_vehicle()), folder);
     if (!options.is_fleet()) return;
     flight.fleet = staged_fleet(name, options, measured, flight.route,
                                 record.flight_record->landing_surfaces, {}, folder, threads, stop);

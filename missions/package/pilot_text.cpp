@@ -119,16 +119,38 @@ std::vector<std::string> px4_steps(const Part& part) {
   return steps;
 }
 
+/// Returns the step that loads the route into the vehicle's app. Empty without a file for it.
+std::string load_step(const Part& part) {
+  const std::string kmz = join_names(part.files, ".kmz");
+  const std::string litchi = join_names(part.files, ".litchi.csv");
+  switch (part.route.vehicle.app) {
+    case flight::MissionApp::litchi:
+      return litchi.empty()
+                 ? ""
+                 : "Import " + litchi +
+                       " in Litchi Mission Hub, one mission per file. Set heading mode "
+                       "\"Custom\", path mode \"Straight Lines\" and finish action \"RTH\".";
+    case flight::MissionApp::fly:
+      return kmz.empty() ? ""
+                         : "Create a waypoint flight in DJI Fly for each file and replace its .kmz "
+                           "file in the folder \"waypoint\" of the controller by " +
+                               kmz + ". Open the flight and compare its waypoints with the report.";
+    default:
+      return kmz.empty()
+                 ? ""
+                 : "Import " + kmz + " in DJI Pilot 2 as a flight route, or in FlightHub 2.";
+  }
+}
+
 std::vector<std::string> dji_steps(const Part& part) {
   std::vector<std::string> steps;
-  if (const std::string kmz = join_names(part.files, ".kmz"); !kmz.empty()) {
-    steps.push_back("Import " + kmz + " in DJI Pilot 2 as a flight route, or in FlightHub 2.");
-  }
+  if (const std::string load = load_step(part); !load.empty()) steps.push_back(load);
   if (part.route.returns) {
     steps.push_back(fmt::format(
-        "Set the RTH altitude to {} m in DJI Pilot 2 ({}). The value in the file does not replace "
+        "Set the RTH altitude to {} m in {} ({}). The value in the file does not replace "
         "this setting.",
-        flight::return_altitude_text(part.route.returns->height), verified));
+        flight::return_altitude_text(part.route.returns->height), to_string(part.route.vehicle.app),
+        verified));
     steps.push_back(
         "Set the RTH mode to \"preset\" and the action on signal loss to return to home. The path "
         "of the RTH mode \"optimal\" is not verified.");

@@ -65,6 +65,7 @@ Json sorties_json(const flight::Route& route) {
                        {"energy_left_wh", sortie.energy_left / 3600.0},
                        {"length_m", sortie.length},
                        {"min_clearance_m", sortie.clearance},
+                       {"waypoints", sortie_points(route, sortie).size()},
                        {"passage", fly_through_json(route, sortie)},
                        {"legs", legs_to_json(route, sortie)}});
   }

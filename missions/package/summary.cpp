@@ -125,6 +125,12 @@ Json image_motion_summary(const SurveyMission& flight) {
           {"distance_m", flight.image_motion->distance}};
 }
 
+/// Returns the limit of an app that needs one waypoint per photo.
+Json waypoint_limit_summary(const flight::Vehicle& vehicle) {
+  if (!vehicle.needs_waypoint_per_photo()) return {};
+  return {{"app", to_string(vehicle.app)}, {"max_waypoints", vehicle.max_waypoints}};
+}
+
 /// Returns the flight of the survey in metres, seconds and watt hours.
 Json survey_flight_summary(const session::FlightRecord& flight_record) {
   return {{"length_m", flight_record.length()},
@@ -169,6 +175,7 @@ Json route_json(const SurveyMission& flight, const Eigen::Vector3d& pad) {
             {"min_clearance_m", route.min_clearance},
             {"sorties", sorties_json(route)},
             {"skipped_views", unreached_json(route.unreached)}}},
+          {"waypoint_limit", waypoint_limit_summary(route.vehicle)},
           {"return", return_summary(flight)},
           {"pictures", image_motion_summary(flight)},
           {"files", files},

@@ -338,7 +338,7 @@ void stage_photo_mission(const config::MissionSetup& setup, const PhotoAirspace&
     folder.write(package::free_space_name, free_space.str());
     mission.flight->files = package::stage_flight(
         setup.name, setup.flight(), mission.flight->route, airspace.measured(),
-        package::package_formats(setup.flight().required_vehicle().autopilot), folder);
+        package::package_formats(setup.flight().required_vehicle()), folder);
   }
   const flight::FlightOptions& options = setup.flight();
   photo::stage_photo_tables(mission.plan,

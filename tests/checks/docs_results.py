@@ -53,6 +53,8 @@ SURVEYS = {
     "re-flight": (TEAPOT, ["--set", "flight.style=fly-through", "--set", "sensor.exposure=0.001",
                            "--set", "sensor.capture=moving"]),
     "target": (TEAPOT + TARGET, ["--set", "limits.max_views=2"]),
+    "consumer drone": (TEAPOT, ["--set", "flight.vehicle=mini_2", "--set", "flight.clearance=3.5",
+                                "--set", "limits.max_views=2"]),
     "no route": (TEAPOT, ["--set", "site.max_height=9"]),
     "SEE++": (TEAPOT, ["--set", "flight.vehicle=none", "--planner", "see++"]),
 }

@@ -226,10 +226,9 @@ class FlightPlanner {
       report_progress_(fmt::format("writing {} sorties from take-off point {}",
                                    routes_[pad]->sorties.size(), pad + 1));
       PadFlight own{pad, *std::move(routes_[pad])};
-      own.files = package::stage_flight(
-          names_[pad], flights_[pad], own.route, *measured_,
-          package::package_formats(flights_[pad].required_vehicle().autopilot), folder,
-          pad_name(pad));
+      own.files = package::stage_flight(names_[pad], flights_[pad], own.route, *measured_,
+                                        package::package_formats(flights_[pad].required_vehicle()),
+                                        folder, pad_name(pad));
       for (const std::string& note : own.files.notes) flight_.notes.push_back(note);
       flight_.pads.push_back(std::move(own));
     }

@@ -150,9 +150,11 @@ flight::FlightOptions find_file_flight(const std::filesystem::path& file,
                                        file.filename().string());
 }
 
-flight::Format own_format(flight::AutopilotType autopilot) {
-  if (autopilot == flight::AutopilotType::dji) return flight::Format::kmz;
-  return autopilot == flight::AutopilotType::px4 ? flight::Format::plan : flight::Format::waypoints;
+flight::Format own_format(const flight::Vehicle& vehicle) {
+  if (vehicle.app == flight::MissionApp::litchi) return flight::Format::litchi;
+  if (vehicle.autopilot == flight::AutopilotType::dji) return flight::Format::kmz;
+  return vehicle.autopilot == flight::AutopilotType::px4 ? flight::Format::plan
+                                                         : flight::Format::waypoints;
 }
 
 }  // namespace skycap::missions::package

@@ -58,7 +58,7 @@ bool is_fleet_file(std::string_view name);
 flight::FlightOptions find_file_flight(const std::filesystem::path& file,
                                        const flight::FlightOptions& options);
 
-/// Returns the native format of an autopilot.
-flight::Format own_format(flight::AutopilotType autopilot);
+/// Returns the native format of a vehicle's autopilot or app.
+flight::Format own_format(const flight::Vehicle& vehicle);
 
 }  // namespace skycap::missions::package

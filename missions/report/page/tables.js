@@ -198,11 +198,13 @@ function flight_section(data) {
   section.append(element("p", {}, "With ", f("vehicle", "text"), ": ", f("route.length_m", "metres"), " in ",
     f("route.duration_s", "minutes"), ", ", f("route.energy_wh", "watt_hours"),
     ". Minimum clearance ", f("route.min_clearance_m", "metres"), ", verified for every leg (required ",
-    f("clearance_m.total", "metres"), ")."), surveyed_part(data));
-  section.append(table(["Sortie", "Views", number("Length"), number("Time"), number("Energy"),
+    f("clearance_m.total", "metres"), ")." + (flight.waypoint_limit
+      ? " " + flight.waypoint_limit.app + " needs one waypoint per photo and accepts at most " + flight.waypoint_limit.max_waypoints +
+        " per file; each sortie has its own take-off, verified returns and landing." : "")), surveyed_part(data));
+  section.append(table(["Sortie", "Views", number("Waypoints"), number("Length"), number("Time"), number("Energy"),
     number("Energy above reserve"), number("Minimum clearance")], sorties_of(data).map((sortie, i) => {
     const path = "route.sorties." + i + ".";
-    return [String(i + 1), sortie.first_station + " to " + sortie.last_station,
+    return [String(i + 1), sortie.first_station + " to " + sortie.last_station, number(sortie.waypoints === undefined ? "" : f(path + "waypoints", "count")),
       number(f(path + "length_m", "metres")), number(f(path + "duration_s", "minutes")),
       number(f(path + "energy_wh", "watt_hours")), number(f(path + "energy_left_wh", "watt_hours")),
       number(f(path + "min_clearance_m", "metres"))];

@@ -11,6 +11,7 @@
 #include "flight/paths/sampling_path.h"
 #include "geometry/error.h"
 #include "tests/flight/scenes.h"
+#include "tests/flight/vehicles.h"
 #include "tests/support/complaint.h"
 
 namespace skycap::flight {
@@ -313,6 +314,30 @@ TEST(Route, SplitsAtWaypointLimit) {
   old.max_waypoints = 94;  // room for ten capture points
   const Route route = plan(ring(24, 18, 8), site(), options(), old);
   EXPECT_EQ(route.sorties.size(), 3U);
+}
+
+TEST(Route, LimitsWaypointsPerSortieOfConsumerDrones) {
+  Vehicle consumer = vehicle_profile("m350_rtk");
+  consumer.app = MissionApp::litchi;
+  for (const int limit : {20, 21, 34, 99}) {
+    consumer.max_waypoints = limit;
+    const Route route = plan(ring(60, 18, 8), site(), options(), consumer);
+    ASSERT_TRUE(route.unreached.empty());
+    std::uint32_t next = 0;
+    std::size_t most = 0;
+    for (const Sortie& sortie : route.sorties) {
+      EXPECT_EQ(sortie.first, next);
+      next = sortie.last + 1;
+      const std::size_t waypoints = sortie_points(route, sortie).size();
+      EXPECT_LE(waypoints, static_cast<std::size_t>(limit));
+      most = std::max(most, waypoints);
+    }
+    EXPECT_EQ(next, 60U);
+    // 60 captures, and at least the two waypoints above the pad per sortie.
+    EXPECT_GE(route.sorties.size(),
+              (60U + static_cast<std::size_t>(limit) - 3) / static_cast<std::size_t>(limit - 2));
+    EXPECT_GE(most + 6, std::min<std::size_t>(60, static_cast<std::size_t>(limit)));
+  }
 }
 
 TEST(Route, ReportsCapturePointOutOfBatteryRange) {

@@ -88,6 +88,12 @@ double best_sortie(const SplitProblem& problem, std::size_t first, std::size_t l
   double best = std::numeric_limits<double>::infinity();
   for (const SplitProblem::Pad& pad : problem.pads) {
     bool is_possible = last - first + 1 <= problem.capture_points_per_sortie;
+    std::size_t waypoints = pad.out[first].waypoints + pad.back[last].waypoints;
+    for (std::size_t i = first; i <= last; ++i) {
+      waypoints += problem.capture_point[i].waypoints;
+      if (i > first) waypoints += problem.leg[i - 1].waypoints;
+    }
+    is_possible &= waypoints <= problem.waypoints_per_sortie;
     double energy = pad.out[first].energy, time = pad.out[first].time;
     for (std::size_t i = first; i <= last; ++i) {
       if (i > first) energy += problem.leg[i - 1].energy, time += problem.leg[i - 1].time;
@@ -128,13 +134,16 @@ TEST(SortieSplit, MatchesBestOfAllSplits) {
     for (int i = 0; i < 10; ++i) {
       for (SplitProblem::Pad& pad : problem.pads) {
         const double home = uniform(random);
-        pad.out.push_back({home, home});
-        pad.back.push_back({home, home});
+        const auto corners = static_cast<std::size_t>(i + round) % 3;
+        pad.out.push_back({home, home, 0.0, 1 + corners});
+        pad.back.push_back({home, home, 0.0, 1 + corners});
       }
-      problem.capture_point.push_back({1, 1});
+      problem.capture_point.push_back({1, 1, 0.0, 1});
       const double time = uniform(random);
-      if (i > 0) problem.leg.push_back({time, uniform(random)});
+      const auto corners = static_cast<std::size_t>(i * round) % 2;
+      if (i > 0) problem.leg.push_back({time, uniform(random), 0.0, corners});
     }
+    if (round % 2 == 1) problem.waypoints_per_sortie = 8;
     problem.energy_per_sortie = 26;
     problem.capture_points_per_sortie = 4;
     const double best = best_by_trying_all(problem);

@@ -29,7 +29,7 @@ std::string error_message(const std::string& text) {
 }
 
 TEST(VehiclePresets, AreValidAndNamedLikeTheirFiles) {
-  EXPECT_EQ(config::vehicle_preset_files().size(), 7U);
+  EXPECT_EQ(config::vehicle_preset_files().size(), 11U);
   for (const auto& [preset, text] : config::vehicle_preset_files()) {
     const flight::Vehicle vehicle = config::find_vehicle(std::string(preset));
     EXPECT_EQ(vehicle.name, preset);
@@ -87,6 +87,24 @@ TEST(VehicleReader, ReadsFixedCamerasAndTheNamesOfOwnOnes) {
   EXPECT_EQ(config::find_vehicle_camera("generic"), "");
 }
 
+TEST(VehicleReader, ReadsTheAppOfConsumerDrones) {
+  const flight::Vehicle fly = config::find_vehicle("mini_4_pro");
+  EXPECT_EQ(fly.app, flight::MissionApp::fly);
+  EXPECT_EQ(fly.max_waypoints, 200);
+  EXPECT_TRUE(fly.needs_waypoint_per_photo());
+  EXPECT_EQ(config::find_vehicle("air_2s").app, flight::MissionApp::litchi);
+  EXPECT_EQ(config::find_vehicle("air_2s").max_waypoints, 99);
+  EXPECT_EQ(config::find_vehicle("mavic_3e").app, flight::MissionApp::pilot);
+  const flight::Vehicle own =
+      config::read_vehicle("name: mine\nlike: mini_4_pro\nmax_waypoints: 99\n", "mine.yaml");
+  EXPECT_EQ(own.app, flight::MissionApp::fly);
+  EXPECT_EQ(own.max_waypoints, 99);
+  EXPECT_THAT(error_message("name: kite\nlike: generic\napp: litchi\n"),
+              HasSubstr("kite.yaml:3: key app requires dialect: dji"));
+  EXPECT_THAT(error_message("name: kite\nlike: mini_2\napp: dronelink\n"),
+              HasSubstr("kite.yaml:3: key app"));
+}
+
 TEST(VehicleReader, ReportsLineOfErrors) {
   const std::string base = "name: kite\nlike: generic\n";
   EXPECT_THAT(error_message(base + "masss: 3\n"), HasSubstr("kite.yaml:3: key masss is unknown"));
@@ -107,7 +125,7 @@ TEST(VehicleReader, ReportsLineOfErrors) {
               HasSubstr("less than the power required to hover at this mass"));
   EXPECT_THAT(
       error_message("name: kite\nlike: dragon\n"),
-      HasSubstr("kite.yaml:2: key like: unknown vehicle dragon; expected one of: generic, "));
+      HasSubstr("kite.yaml:2: key like: unknown vehicle dragon; expected one of: air_2s, "));
   EXPECT_THAT(error_message("name: kite\n"), HasSubstr("key dialect is missing"));
   EXPECT_THAT(error_message("like: generic\n"), HasSubstr("key name is missing"));
 }
