@@ -21,6 +21,7 @@
 #include "missions/package/flight_report.h"
 #include "missions/package/package.h"
 #include "missions/package/pilot_text.h"
+#include "missions/package/profile_file.h"
 #include "missions/package/settings.h"
 #include "missions/support/json_text.h"
 #include "missions/version.h"
@@ -164,6 +165,7 @@ void stage_route_files(const config::MissionSetup& setup, const InspectionSpace&
     flight.files = package::stage_flight(
         setup.name, inspection_flight_options(space), flight.route, space.space(),
         inspection_formats(flight.route.vehicle.autopilot), folder);
+    package::stage_profile(inspection_flight_options(space), flight.route, space.space(), folder);
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::bad_config && error.kind() != ErrorKind::bad_geometry) throw;
     flight.files.notes.emplace_back(error.what());
@@ -331,7 +333,7 @@ void stage_inspection_mission(const config::MissionSetup& setup, const Inspectio
   folder.replace([](std::string_view name) {
     return name == package::free_space_name || name == package::report_name ||
            name == package::field_sheet_name || name == package::fly_test_name ||
-           package::is_flight_file(name);
+           name == package::profile_name || package::is_flight_file(name);
   });
   folder.write(flight_name, write_flight_csv(mission.plan.samples));
   for (const flight::Format format :

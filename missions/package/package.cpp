@@ -25,6 +25,7 @@
 #include "missions/package/former_fields.h"
 #include "missions/package/ground_json.h"
 #include "missions/package/holes.h"
+#include "missions/package/profile_file.h"
 #include "missions/package/replanned_mission.h"
 #include "missions/package/settings.h"
 #include "missions/package/written_mission.h"
@@ -157,6 +158,7 @@ void stage_mission(const std::string& name, const flight::FlightOptions& options
     const flight::MeasuredSpace& measured = *record.flight_record->measured;
     flight.files = stage_flight(name, options, flight.route, measured,
                                 package_formats(options.required_vehicle()), folder);
+    stage_profile(options, flight.route, measured, folder, stop);
     if (!options.is_fleet()) return;
     flight.fleet = staged_fleet(name, options, measured, flight.route,
                                 record.flight_record->landing_surfaces, {}, folder, threads, stop);
@@ -289,7 +291,7 @@ std::optional<SurveyMission> stage_package(const config::MissionSetup& setup,
   folder.replace([](std::string_view name) {
     return name == free_space_name || name == coverage_name || name == true_coverage_name ||
            name == fly_test_name || name == report_name || name == field_sheet_name ||
-           is_flight_file(name);
+           name == profile_name || is_flight_file(name);
   });
   std::vector<Eigen::Vector3f> normals;
   std::optional<SurveyMission> flight;

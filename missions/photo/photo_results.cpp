@@ -20,6 +20,7 @@
 #include "missions/package/field_sheet.h"
 #include "missions/package/flight_report.h"
 #include "missions/package/package.h"
+#include "missions/package/profile_file.h"
 #include "missions/package/settings.h"
 #include "missions/photo/colmap_model.h"
 #include "missions/photo/control_points.h"
@@ -329,7 +330,7 @@ void stage_photo_mission(const config::MissionSetup& setup, const PhotoAirspace&
     return name == package::free_space_name || name == package::report_name ||
            name == surface_map_name || name == control_table_name ||
            name == package::field_sheet_name || name == package::fly_test_name ||
-           package::is_flight_file(name);
+           name == package::profile_name || package::is_flight_file(name);
   });
   if (mission.flight) {
     std::ostringstream free_space;
@@ -339,6 +340,7 @@ void stage_photo_mission(const config::MissionSetup& setup, const PhotoAirspace&
     mission.flight->files = package::stage_flight(
         setup.name, setup.flight(), mission.flight->route, airspace.measured(),
         package::package_formats(setup.flight().required_vehicle()), folder);
+    package::stage_profile(setup.flight(), mission.flight->route, airspace.measured(), folder);
   }
   const flight::FlightOptions& options = setup.flight();
   photo::stage_photo_tables(mission.plan,

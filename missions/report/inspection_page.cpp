@@ -12,8 +12,10 @@
 #include "geometry/io/cloud_io.h"
 #include "geometry/io/file.h"
 #include "missions/package/package.h"
+#include "missions/package/profile_file.h"
 #include "missions/report/cloud_code.h"
 #include "missions/report/page.h"
+#include "missions/report/profile_data.h"
 #include "missions/report/scene_outline.h"
 #include "missions/report/verdict.h"
 #include "missions/support/json_text.h"
@@ -99,9 +101,10 @@ std::string inspection_page(const ResultFinder& results, std::size_t max_points)
         {"palette", palette},
         {"piece", "image"},
         {"pieces", pieces_json(results(poses_name))},
+        {"profile", profile_data(results)},
         {"files", files_json({package::summary_name, "inspection.csv", "setpoints.enu.csv",
                               "setpoints.ned.csv", poses_name, structure_name, "mission.kmz",
-                              "mission.plan", "mission.waypoints"},
+                              "mission.plan", "mission.waypoints", package::profile_name},
                              results)}};
     return page_text(data.at("title"), data,
                      {{"measured", encode_cloud(structure.positions, attributes, max_points)}});

@@ -13,9 +13,11 @@
 #include "flight/export/text.h"
 #include "geometry/io/file.h"
 #include "missions/package/package.h"
+#include "missions/package/profile_file.h"
 #include "missions/report/cloud_code.h"
 #include "missions/report/page.h"
 #include "missions/report/point_figures.h"
+#include "missions/report/profile_data.h"
 #include "missions/report/scene_outline.h"
 #include "missions/report/verdict.h"
 
@@ -170,8 +172,9 @@ std::string photo_page(const ResultFinder& results, std::size_t max_points) {
           {"observations", histogram_json(map.observations, 0.0, 30.0, 30)},
           {"parallax_deg", histogram_json(map.parallax, 0.0, 40.0, 20)},
           {"incidence_deg", histogram_json(map.incidence, 0.0, 90.0, 18)}}},
+        {"profile", profile_data(results)},
         {"files", files_json({package::summary_name, "photos.csv", "geo.txt", surface_map_name,
-                              "control_points.csv", "field_sheet.html"},
+                              "control_points.csv", "field_sheet.html", package::profile_name},
                              results)}};
     return page_text(data.at("title"), data,
                      {{"measured", encode_cloud(map.positions, attributes, max_points)}});

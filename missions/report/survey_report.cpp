@@ -19,8 +19,10 @@
 #include "missions/package/fleet/timetable_file.h"
 #include "missions/package/former_fields.h"
 #include "missions/package/package.h"
+#include "missions/package/profile_file.h"
 #include "missions/report/page.h"
 #include "missions/report/point_figures.h"
+#include "missions/report/profile_data.h"
 #include "missions/report/scene_outline.h"
 #include "missions/report/verdict.h"
 #include "missions/support/json_text.h"
@@ -39,8 +41,8 @@ geometry::AttributedCloud cloud_if_there(const fs::path& file) {
 /// Returns the files in the folder other than the summary.
 Json collect_files(const Json& summary, const ResultFinder& results) {
   std::vector<std::string> names = {
-      "cloud.ply",      "coverage.ply",           "true_coverage.ply",      "views.csv",
-      "trajectory.tum", package::free_space_name, package::field_sheet_name};
+      "cloud.ply",      "coverage.ply",           "true_coverage.ply",       "views.csv",
+      "trajectory.tum", package::free_space_name, package::field_sheet_name, package::profile_name};
   const auto add_all = [&](const Json::json_pointer& pointer, const char* field) {
     if (!summary.contains(pointer) || !summary[pointer].is_array()) return;
     for (const Json& entry : summary[pointer]) {
@@ -197,6 +199,7 @@ std::string survey_report(const ResultFinder& results, std::size_t max_points) {
         {"scene", scene_outline(survey.mission.survey(), survey.mission.scene(), survey.pad)},
         {"hole_places", hole_positions(summary, survey.mission.flight())},
         {"accuracy", std::move(accuracy)},
+        {"profile", profile_data(results)},
         {"files", collect_files(summary, results)}};
     return page_text(data.at("title"), data, clouds);
   } catch (const Json::exception& error) {

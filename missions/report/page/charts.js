@@ -16,7 +16,7 @@ function chart(title, note, type, datasets, options) {
       interaction: { mode: "nearest", axis: "x", intersect: false },
       plugins: { legend: { display: datasets.length > 1, labels: { boxWidth: 20, boxHeight: type === "line" ? 1 : 8, usePointStyle: !!options.labels && datasets.some((set) => set.pointStyle),
         filter: (item) => !item.text.startsWith("_") } },
-        tooltip: { filter: (item) => !item.dataset.label.startsWith("_") } },
+        tooltip: { filter: (item) => !item.dataset.label.startsWith("_"), callbacks: options.tooltip || {} } },
       scales: {
         x: axis(options.x, { type: options.labels ? "category" : "linear", ...(options.x_more || {}) }),
         y: axis(options.y, { beginAtZero: !options.is_free, ...(options.y_more || {}) }),
@@ -118,6 +118,10 @@ function reliability_chart(data) {
 
 function survey_charts(data) {
   const { summary } = data, views = summary.per_view || [];
+  if (!views.length && data.profile) {
+    return element("section", { id: "curves" }, element("h2", {}, "Route profile"),
+      element("div", { class: "charts" }, route_charts(data)));
+  }
   if (!views.length) return null;
   const is_known = typeof views[0].coverage === "number";  // unknown for real sites
   const charts = [
@@ -127,7 +131,7 @@ function survey_charts(data) {
       line("new points", views.map((view, i) => [i + 1, view.points_new]), 1)], { x: "views", y: "points" }),
     chart("Planning time", "Planning time per view on this machine.", "line",
       [line("planning", views.map((view, i) => [i + 1, view.planning_time_s]))], { x: "views", y: "s" }),
-    clearance_chart(data), energy_chart(data), reliability_chart(data)];
+    ...route_charts(data), energy_chart(data), reliability_chart(data)];
   return element("section", { id: "curves" }, element("h2", {}, "Curves"),
     element("div", { class: "charts" }, charts));
 }

@@ -86,7 +86,7 @@ function photo_charts(data) {
     histogram_chart("Photos of a point", null, histograms.observations, "photos", 1),
     histogram_chart("Parallax", "Maximum parallax between two stereo partners of a point.", histograms.parallax_deg, "degrees", 2),
     histogram_chart("Incidence", "Minimum angle of incidence among the photos of a point.", histograms.incidence_deg, "degrees", 3),
-    clearance_chart(data), energy_chart(data)));
+    route_charts(data), energy_chart(data)));
 }
 
 const how_photographed = [
