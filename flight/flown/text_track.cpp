@@ -1,6 +1,4 @@
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -12,6 +10,7 @@
 #include "flight/export/text.h"
 #include "flight/export/trajectory_file.h"
 #include "flight/flown/flown_readers.h"
+#include "flight/flown/position_table.h"
 #include "geometry/angle.h"
 #include "geometry/error.h"
 #include "geometry/text_parts.h"
@@ -21,128 +20,19 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double metres_per_foot = 0.3048;
-
 [[noreturn]] void fail_line(std::size_t line, const std::string& what) {
   throw Error(ErrorKind::bad_file, "line " + std::to_string(line) + " " + what);
 }
 
 // ---- CSV tables -------------------------------------------------------------------------------
 
-enum class Column {
-  time,
-  latitude,
-  longitude,
-  above_takeoff,
-  sea_level,
-  ellipsoid,
-  yaw,
-  camera_yaw,
-  camera_pitch,
-  photo
-};
-constexpr std::size_t num_columns = 10;
-
-/// Names of columns in lower-case letters without the unit, in descending order of preference.
-struct ColumnNames {
-  Column column;
-  std::vector<std::string_view> names;
-};
-
-const std::vector<ColumnNames>& track_columns() {
-  static const std::vector<ColumnNames> all = {
-      {Column::time, {"time", "flytime", "osdflytime", "timestamp", "elapsedtime", "offsettime"}},
-      {Column::latitude, {"latitude", "lat", "osdlatitude", "gpslat", "gpslatitude"}},
-      {Column::longitude,
-       {"longitude", "lon", "lng", "long", "osdlongitude", "gpslong", "gpslongitude"}},
-      {Column::above_takeoff,
-       {"heightabovetakeoff", "osdheight", "height", "relativealtitude", "relalt",
-        "heightabovehome"}},
-      {Column::sea_level,
-       {"altitudeabovesealevel", "amsl", "altitude", "alt", "osdaltitude", "absalt",
-        "absolutealtitude"}},
-      {Column::ellipsoid, {"ellipsoidheight", "ellh", "heightaboveellipsoid"}},
-      {Column::yaw, {"compassheading", "heading", "yaw", "osdyaw"}},
-      {Column::camera_yaw, {"gimbalheading", "gimbalyaw", "cameraheading", "camerayaw"}},
-      {Column::camera_pitch, {"gimbalpitch", "camerapitch"}},
-      {Column::photo, {"isphoto", "camerainfoisphoto", "cameraisphoto", "photo", "capture"}}};
-  return all;
-}
-
-/// Position of a column in the table, and the factor to metres, seconds or degrees.
-struct TableColumn {
-  std::size_t index = 0;
-  double unit = 1.0;
-};
-using Table = std::array<std::optional<TableColumn>, num_columns>;
-
-const std::optional<TableColumn>& column(const Table& table, Column which) {
-  return table[static_cast<std::size_t>(which)];
-}
-
-std::string unquoted(std::string_view field) {
-  std::string text(geometry::trimmed(field));
-  if (text.size() >= 2 && text.front() == '"' && text.back() == '"') {
-    text = text.substr(1, text.size() - 2);
-  }
-  return text;
-}
-
-/// Splits a name such as "height_above_takeoff(feet)" into letters and unit.
-std::pair<std::string, std::string> name_and_unit(const std::string& field) {
-  std::string letters, unit, *part = &letters;
-  for (const unsigned char c : field) {
-    if (c == '(' || c == '[') part = &unit;
-    if (std::isalpha(c) != 0) part->push_back(static_cast<char>(std::tolower(c)));
-  }
-  const auto cut = [&](std::string_view ending, std::string_view meaning) {
-    if (!unit.empty() || !field.ends_with(ending)) return;
-    letters.resize(letters.size() - (ending.size() - 1));
-    unit = meaning;
-  };
-  cut("_deg", "degrees");
-  cut("_m", "m");
-  cut("_ft", "ft");
-  cut("_s", "s");
-  cut("_ms", "millisecond");
-  return {letters, unit};
-}
-
-double compute_unit(const std::string& unit) {
-  if (unit.starts_with("feet") || unit == "ft") return metres_per_foot;
-  if (unit.starts_with("millisecond") || unit == "ms") return 1e-3;
-  return 1.0;
-}
-
-Table find_track_columns(const std::vector<std::string>& header) {
-  Table table;
-  for (const ColumnNames& wanted : track_columns()) {
-    std::optional<TableColumn>& found = table[static_cast<std::size_t>(wanted.column)];
-    for (const std::string_view name : wanted.names) {
-      for (std::size_t i = 0; i < header.size() && !found; ++i) {
-        const auto [letters, unit] = name_and_unit(header[i]);
-        if (letters == name) found = TableColumn{i, compute_unit(unit)};
-      }
-    }
-  }
-  const bool has_height = column(table, Column::above_takeoff) ||
-                          column(table, Column::sea_level) || column(table, Column::ellipsoid);
-  if (!column(table, Column::latitude) || !column(table, Column::longitude) || !has_height) {
-    throw Error(ErrorKind::bad_file,
-                "the first line must name the columns latitude, longitude and a height "
-                "(height_above_takeoff, altitude or ellipsoid_height)");
-  }
-  return table;
-}
-
 /// Adds the rows of a table.
 class TableRows {
  public:
-  explicit TableRows(const Table& table) : table_(table) {
-    const bool is_ellipsoid =
-        !column(table_, Column::sea_level) && column(table_, Column::ellipsoid);
+  explicit TableRows(const PositionTable& table) : table_(table) {
+    const bool is_ellipsoid = !table_[Column::sea_level] && table_[Column::ellipsoid];
     builder_.log().datum = is_ellipsoid ? HeightDatum::ellipsoid : HeightDatum::mean_sea_level;
-    builder_.log().has_captures = column(table_, Column::photo).has_value();
+    builder_.log().has_captures = table_[Column::photo].has_value();
   }
 
   void add(const std::vector<std::string>& fields, std::size_t line) {
@@ -171,9 +61,9 @@ class TableRows {
 
  private:
   double read(const std::vector<std::string>& fields, Column which, std::size_t line) const {
-    const auto& place = column(table_, which);
+    const std::optional<TableColumn>& place = table_[which];
     if (!place || place->index >= fields.size()) return unspecified;
-    const std::string text = unquoted(fields[place->index]);
+    const std::string text = unquoted_field(fields[place->index]);
     if (text.empty()) return unspecified;
     if (which == Column::photo && (text == "True" || text == "true")) return 1.0;
     if (which == Column::photo && (text == "False" || text == "false")) return 0.0;
@@ -185,16 +75,10 @@ class TableRows {
     return unspecified;
   }
 
-  const Table& table_;
+  const PositionTable& table_;
   FlownLogBuilder builder_{"CSV table"};
   bool was_photo_ = false;
 };
-
-std::vector<std::string> split_row(std::string_view line, char separator) {
-  std::vector<std::string> fields = split(line, separator);
-  for (std::string& field : fields) field = unquoted(field);
-  return fields;
-}
 
 // ---- Tables of photos and subtitles -----------------------------------------------------------
 
@@ -296,28 +180,10 @@ std::optional<double> iso_time(std::string_view text) {
 }  // namespace
 
 FlownLog read_csv_track(std::string_view text) {
-  std::optional<Table> table;
-  std::optional<TableRows> rows;
-  char separator = ',';
-  std::size_t number = 0;
-  for (std::string_view rest = text; !rest.empty();) {
-    const std::string_view line = next_line(rest);
-    ++number;
-    if (geometry::trimmed(line).empty() || line.starts_with("sep=") || line.starts_with('#')) {
-      continue;
-    }
-    if (!table) {
-      if (line.find(',') == std::string_view::npos) {
-        separator = line.find(';') != std::string_view::npos ? ';' : '\t';
-      }
-      table = find_track_columns(split_row(line, separator));
-      rows.emplace(*table);
-      continue;
-    }
-    rows->add(split(line, separator), number);
-  }
-  if (!rows) throw Error(ErrorKind::bad_file, "contains no header line");
-  return rows->finish();
+  PositionTable table(text);
+  TableRows rows(table);
+  while (const auto row = table.next()) rows.add(row->fields, row->line);
+  return rows.finish();
 }
 
 FlownLog read_mrk_track(std::string_view text) {

@@ -134,12 +134,23 @@ struct ExportOptions {
   /// Number of the lost fleet vehicle, from 1, whose waypoints are reassigned.
   std::optional<std::size_t> lost;
   std::optional<double> after;  ///< time of the loss in the fleet's timetable [s]
+  /// Route or track from elsewhere; `package` may then be a mission file, too.
+  std::optional<std::filesystem::path> route;
+  std::optional<double> simplify;  ///< maximum deviation of the simplified route [m]
+  bool repairs = false;            ///< whether legs that are not free go round obstacles
+  std::string heights = "auto";    ///< auto, takeoff or absolute
+  std::string captures = "file";   ///< file, all or none
   std::vector<config::KeyOverride> overrides;
 };
 
 /// Plans a flight through the views of a completed survey and writes it in other formats or for
 /// another vehicle. Returns exit code 1 if no view is reachable.
 int export_package(const ExportOptions& options, const Console& console);
+
+/// Verifies a route from elsewhere against the scene, the prior data and the airspace of a mission
+/// and writes it like a planned flight, with its profile. Prints the legs that are not verified and
+/// returns exit code 1 without files if there are any and `repairs` is not set.
+int export_route(const ExportOptions& options, const Console& console);
 
 struct FlyTestCommandOptions {
   std::filesystem::path package;             ///< package folder written by plan()

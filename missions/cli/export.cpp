@@ -113,6 +113,13 @@ int export_inspection(const ExportOptions& options, std::span<const flight::Form
 }  // namespace
 
 int export_package(const ExportOptions& options, const Console& console) {
+  if (options.route) return export_route(options, console);
+  if (options.simplify || options.repairs || options.heights != "auto" ||
+      options.captures != "file") {
+    throw Error(ErrorKind::bad_usage,
+                "--simplify, --repair, --heights and --captures require --route");
+  }
+  if (options.formats.empty()) throw Error(ErrorKind::bad_usage, "--format is required");
   std::vector<flight::Format> formats;
   for (const std::string& name : options.formats) formats.push_back(flight::format_named(name));
   check_lost(options);
@@ -154,15 +161,17 @@ int export_package(const ExportOptions& options, const Console& console) {
 
 void add_export(CLI::App& app, const Console& console, Action& action) {
   CLI::App* command = app.add_subcommand(
-      "export", "Export a planned flight in another format or for another vehicle");
+      "export", "Export a flight or your own route in another format or for another vehicle");
   const auto options = std::make_shared<ExportOptions>();
   const auto keys = std::make_shared<KeyOptions>();
-  command->add_option("package", options->package, "Results folder of plan")->required();
   command
-      ->add_option(
-          "--format", options->formats,
-          "Format: plan, waypoints, kmz, kml, geojson, litchi, csv, ned-csv or tum; repeatable")
-      ->required()
+      ->add_option("package", options->package,
+                   "Results folder of plan; with --route, a mission file or a results folder")
+      ->required();
+  command
+      ->add_option("--format", options->formats,
+                   "Format: plan, waypoints, kmz, kml, geojson, litchi, csv, ned-csv or tum; "
+                   "repeatable (default with --route: those of the vehicle)")
       ->type_size(1)
       ->allow_extra_args(false);
   command->add_option("--out", options->out, "Folder for the files (default: the package)");
@@ -175,6 +184,26 @@ void add_export(CLI::App& app, const Console& console, Action& action) {
       ->add_option("--after", options->after,
                    "Time of loss in the timetable, in seconds (default: before the first take-off)")
       ->check(number_between(0.0, 1e9));
+  command->add_option("--route", options->route,
+                      "Route or track to verify and export instead: waypoint table .csv, .kml, a "
+                      "route file, or a flight log (.bin, .ulg, .gpx, .srt, .tum)");
+  command
+      ->add_option("--simplify", options->simplify,
+                   "Maximum distance in metres of the route's positions from the simplified route "
+                   "(default: 0.5 for tracks and logs; waypoints are not simplified)")
+      ->check(number_between(0.01, 100.0));
+  command->add_flag("--repair", options->repairs,
+                    "Lead legs that are not free round the obstacles, and skip waypoints that are "
+                    "not free");
+  command
+      ->add_option("--heights", options->heights,
+                   "Heights of the route to use: auto, takeoff or absolute (default: auto)")
+      ->check(CLI::IsMember({"auto", "takeoff", "absolute"}));
+  command
+      ->add_option("--captures", options->captures,
+                   "Waypoints of the route with a photo: file (as in the file), all or none "
+                   "(default: file)")
+      ->check(CLI::IsMember({"file", "all", "none"}));
   add_set_option(*command, *keys);
   run_with_keys(*command, options, keys, export_package, console, action);
 }

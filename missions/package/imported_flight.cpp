@@ -1,0 +1,227 @@
+#include "missions/package/imported_flight.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "flight/clearance/interruptible_space.h"
+#include "flight/flown/track_simplification.h"
+#include "geometry/angle.h"
+#include "geometry/error.h"
+#include "missions/support/number_text.h"
+
+namespace skycap::missions::package {
+namespace {
+
+using Eigen::Vector3d;
+using flight::ImportedPoint;
+
+/// Radius of the column above the pad in which positions belong to climb and landing [m].
+constexpr double pad_column_radius = 3.0;
+
+std::string leg_name(const flight::ImportedRoute& route, std::size_t leg) {
+  return fmt::format("leg {} ({} to {})", leg + 1, route.points[leg].item,
+                     route.points[leg + 1].item);
+}
+
+/// Lists the straight legs and the waypoints that are not free.
+void verify_straight(ImportedFlight& flight, const flight::FreeSpace& space, double clearance,
+                     const std::stop_token& stop) {
+  std::vector<Vector3d> positions;
+  for (const ImportedPoint& point : flight.route.points) positions.push_back(point.position);
+  const auto certificates = verify_route(positions, space, clearance, clearance, stop);
+  for (std::size_t i = 0; i < certificates.size(); ++i) {
+    const auto& [verification, obstacle] = certificates[i];
+    if (verification.is_verified) continue;
+    ++flight.unverified_legs;
+    const std::string leg = positions.size() > 1 ? leg_name(flight.route, i)
+                                                 : "waypoint " + flight.route.points[i].item;
+    flight.problems.push_back(leg + ": " +
+                              describe(flight::Violation{i, verification.closest, obstacle})
+                                  .substr(("leg " + std::to_string(i) + ": ").size()));
+  }
+}
+
+/// Returns the heading of the leg to a waypoint, or from the first one [deg].
+double leg_heading(const std::vector<ImportedPoint>& points, std::size_t i) {
+  const auto heading = [](const Vector3d& leg) {
+    return std::atan2(leg.x(), leg.y()) / geometry::radians_per_degree;
+  };
+  constexpr double min_leg = 0.01;
+  for (std::size_t end = i; end > 0; --end) {
+    const Vector3d leg = points[end].position - points[end - 1].position;
+    if (leg.head<2>().norm() > min_leg) return heading(leg);
+  }
+  for (std::size_t begin = i; begin + 1 < points.size(); ++begin) {
+    const Vector3d leg = points[begin + 1].position - points[begin].position;
+    if (leg.head<2>().norm() > min_leg) return heading(leg);
+  }
+  return 0.0;
+}
+
+/// Lists the legs that the flight does not follow on a straight line.
+std::vector<ChangedLeg> find_changed(const ImportedFlight& flight) {
+  const flight::Route& route = flight.mission->route;
+  const std::vector<ImportedPoint>& points = flight.route.points;
+  std::vector<ChangedLeg> changed;
+  for (std::size_t i = 0; i < route.legs.size(); ++i) {
+    const std::size_t from = route.capture_points[i].view_index;
+    const std::size_t to = route.capture_points[i + 1].view_index;
+    if (route.legs[i].points.size() == 2 && to == from + 1) continue;
+    const double straight = (points[to].position - points[from].position).norm();
+    changed.push_back({points[from].item, points[to].item, straight, route.legs[i].length});
+  }
+  return changed;
+}
+
+}  // namespace
+
+ImportedFlight simplify_import(flight::ImportedRoute route, const flight::FlightOptions& options,
+                               const Vector3d& pad, const ImportOptions& import) {
+  ImportedFlight flight;
+  flight.positions = route.points.size();
+  flight.on_pad = remove_pad_column(route, pad, pad_column_radius, options.climb());
+  flight.tolerance = import.tolerance;
+  if (!flight.tolerance && route.is_track) flight.tolerance = default_track_tolerance;
+  if (flight.tolerance && !route.points.empty()) {
+    std::vector<flight::TrackSample> samples;
+    for (const ImportedPoint& point : route.points) {
+      const bool is_kept = point.captures > 0 || point.hold > 0.0;
+      samples.push_back({point.time, point.position, point.yaw_deg, point.pitch_deg, is_kept});
+    }
+    const flight::SimplifiedTrack simplified =
+        simplify_track(samples, {.tolerance = *flight.tolerance});
+    flight.deviation = simplified.deviation;
+    std::vector<ImportedPoint> kept;
+    for (const std::size_t i : simplified.kept) kept.push_back(std::move(route.points[i]));
+    route.points = std::move(kept);
+  }
+  flight.route = std::move(route);
+  return flight;
+}
+
+std::vector<flight::CapturePoint> import_capture_points(const flight::ImportedRoute& route,
+                                                        const flight::FlightOptions& options,
+                                                        ImportedCaptures captures) {
+  const flight::Vehicle& vehicle = options.required_vehicle();
+  const double level_pitch = std::clamp(0.0, vehicle.gimbal_min, vehicle.gimbal_max);
+  std::vector<flight::CapturePoint> capture_points;
+  for (std::size_t i = 0; i < route.points.size(); ++i) {
+    const ImportedPoint& point = route.points[i];
+    const double yaw = std::isfinite(point.yaw_deg) ? point.yaw_deg : leg_heading(route.points, i);
+    const double pitch = std::isfinite(point.pitch_deg)
+                             ? geometry::radians_per_degree * point.pitch_deg
+                             : level_pitch;
+    flight::CapturePoint capture;
+    capture.view = {point.position,
+                    flight::compute_direction({geometry::radians_per_degree * yaw, pitch})};
+    capture.view_index = static_cast<std::uint32_t>(i);
+    capture.captures = point.captures;
+    if (captures == ImportedCaptures::all) capture.captures = std::max(1, point.captures);
+    if (captures == ImportedCaptures::none) capture.captures = 0;
+    const bool is_capture = capture.captures > 0;
+    capture.hold = std::max(point.hold, is_capture ? options.rest_before() : 0.0);
+    capture.hold_after = is_capture ? options.rest_after() : 0.0;
+    if (i > 0) capture.approach_path = {route.points[i - 1].position, point.position};
+    capture_points.push_back(std::move(capture));
+  }
+  return capture_points;
+}
+
+void plan_import(ImportedFlight& flight, const flight::FlightOptions& given,
+                 const ImportSpace& space, const Vector3d& pad, const ImportOptions& import,
+                 const std::stop_token& stop) {
+  if (flight.route.points.empty()) {
+    throw Error(ErrorKind::bad_file, "all positions are at the take-off point");
+  }
+  flight::FlightOptions options = with_fixed_order(given);
+  options.style = flight::FlightStyle::stop;
+  flight::Obstacles rules = options.rules();
+  const flight::KnownSpace known(rules);
+  const flight::KnownSpace known_over_pad(without_ground(std::move(rules)));
+  const flight::JointSpace joint({space.space, &known});
+  const flight::FreeSpace* over_pad = space.over_pad != nullptr ? space.over_pad : &known_over_pad;
+  const flight::JointSpace joint_over_pad({over_pad, &known_over_pad});
+  const flight::InterruptibleSpace interruptible(joint, stop);
+
+  if (!import.repairs) {
+    verify_straight(flight, interruptible, options.budget().total(), stop);
+    if (!flight.problems.empty()) return;
+  }
+  SurveyMission mission;
+  mission.image_motion = options.image_motion_bounds();
+  flight::RouteOptions route = options.route(pad);
+  route.landing_surfaces = options.landing_surfaces(pad, space.landing_surfaces);
+  mission.route = plan_route(import_capture_points(flight.route, options, import.captures),
+                             options.required_vehicle(), interruptible, &joint_over_pad, route);
+  flight.mission = std::move(mission);
+  for (const flight::Unreached& missed : flight.mission->route.unreached) {
+    const std::string text =
+        fmt::format("waypoint {}: {}", flight.route.points[missed.capture_point.view_index].item,
+                    missed.reason);
+    (import.repairs ? flight.skipped : flight.problems).push_back(text);
+  }
+  flight.changed = find_changed(flight);
+  if (!import.repairs) {
+    for (const ChangedLeg& leg : flight.changed) {
+      // The straight leg is free, so that only the returns can require another path.
+      flight.problems.push_back(
+          fmt::format("leg from {} to {}: no verified return from part of it", leg.from, leg.to));
+    }
+  } else if (flight.mission->route.capture_points.empty()) {
+    flight.problems = flight.skipped;
+  }
+  if (!flight.problems.empty()) flight.mission.reset();
+}
+
+namespace {
+
+/// Returns the numbers of waypoints and captures, and a warning for legs that DJI apps reject.
+std::string waypoints_text(const flight::Route& route) {
+  // DJI Mobile SDK, DJIMutableWaypointMission: 0.5 to 2000 m between adjacent waypoints.
+  constexpr double min_dji_leg = 0.5;
+  std::size_t captures = 0, short_legs = 0;
+  for (const flight::CapturePoint& point : route.capture_points) {
+    captures += point.captures > 0 ? 1 : 0;
+  }
+  for (const flight::Leg& leg : route.legs) short_legs += leg.length < min_dji_leg ? 1 : 0;
+  std::string text = fmt::format("  captures  at {} of {}\n", captures,
+                                 support::counted(route.capture_points.size(), "waypoint"));
+  if (short_legs > 0 && route.vehicle.autopilot == flight::AutopilotType::dji) {
+    text += fmt::format("  warning   {} shorter than {:g} m, which DJI apps may reject\n",
+                        support::counted(short_legs, "leg"), min_dji_leg);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string import_text(const ImportedFlight& flight, const std::string& file,
+                        const flight::FlightOptions& options) {
+  std::string text =
+      fmt::format("  route     {}: {}, {}, heights {}\n", file, flight.route.kind,
+                  support::counted(flight.positions, "position"), flight.route.heights);
+  if (flight.tolerance) {
+    text += fmt::format("  simplified to {}, maximum deviation {:.3f} m, at most {:g} m allowed\n",
+                        support::counted(flight.route.points.size(), "waypoint"), flight.deviation,
+                        *flight.tolerance);
+  }
+  if (flight.on_pad > 0) {
+    text += fmt::format("  take-off  {} at the take-off point replaced by the climb to {:g} m\n",
+                        support::counted(flight.on_pad, "position"), options.climb());
+  }
+  for (const ChangedLeg& leg : flight.changed) {
+    text += fmt::format("  repaired  leg from {} to {}: {:.1f} m instead of {:.1f} m\n", leg.from,
+                        leg.to, leg.length, leg.straight);
+  }
+  if (flight.mission) text += waypoints_text(flight.mission->route);
+  for (const std::string& waypoint : flight.skipped) text += "  skipped   " + waypoint + "\n";
+  for (const std::string& warning : flight.route.warnings) {
+    text += "  warning   " + warning + "\n";
+  }
+  return text;
+}
+
+}  // namespace skycap::missions::package
