@@ -369,7 +369,8 @@ ComparedPhotos evaluate_photos(const config::MissionSetup& setup,
   const std::vector<survey::photo::PhotoFigures> figures =
       survey::photo::evaluate_photos(photo.options, photo::photo_site(setup, airspace),
                                      {setup.run.seed, setup.run.threads, stop}, sets);
-  ComparedPhotos photos{.flown = figures[1]};
+  ComparedPhotos photos;
+  photos.flown = figures[1];
   if (comparison.has_plan) photos.planned = figures[0];
   if (comparison.patch) photos.patched = figures[2];
   return photos;

@@ -190,7 +190,7 @@ std::string waypoints_text(const flight::Route& route) {
   std::string text = fmt::format("  captures  at {} of {}\n", captures,
                                  support::counted(route.capture_points.size(), "waypoint"));
   if (short_legs > 0 && route.vehicle.autopilot == flight::AutopilotType::dji) {
-    text += fmt::format("  warning   {} shorter than {:g} m, which DJI apps may reject\n",
+    text += fmt::format("  Warning: {} shorter than {:g} m, which DJI apps may reject\n",
                         support::counted(short_legs, "leg"), min_dji_leg);
   }
   return text;
@@ -219,7 +219,7 @@ std::string import_text(const ImportedFlight& flight, const std::string& file,
   if (flight.mission) text += waypoints_text(flight.mission->route);
   for (const std::string& waypoint : flight.skipped) text += "  skipped   " + waypoint + "\n";
   for (const std::string& warning : flight.route.warnings) {
-    text += "  warning   " + warning + "\n";
+    text += "  Warning: " + warning + "\n";
   }
   return text;
 }
