@@ -245,11 +245,18 @@ Json offset_json(const std::optional<Offset>& offset, bool is_applied) {
           {"median_error_after_m", offset->registration.error}};
 }
 
+/// Returns a number with fixed digits, and without the sign of a rounded zero.
+std::string signed_text(double value, int digits) {
+  std::string text = fmt::format("{:.{}f}", value, digits);
+  if (text.front() == '-' && text.find_first_not_of("-0.") == std::string::npos) text.erase(0, 1);
+  return text;
+}
+
 std::string offset_text(const std::optional<Offset>& offset, bool is_applied) {
   if (!offset) return "unknown: the clouds have no common planes";
-  const std::string text =
-      fmt::format("offset {:.3f}, {:.3f}, {:.3f} m, rotation {:.3f} deg", offset->shift.x(),
-                  offset->shift.y(), offset->shift.z(), offset->turn_deg);
+  const std::string text = fmt::format(
+      "offset {}, {}, {} m, rotation {:.3f} deg", signed_text(offset->shift.x(), 3),
+      signed_text(offset->shift.y(), 3), signed_text(offset->shift.z(), 3), offset->turn_deg);
   if (is_applied) return "aligned here; " + text + " removed";
   return (offset->is_aligned() ? "aligned; " : "NOT aligned; ") + text;
 }
@@ -326,8 +333,9 @@ int evaluate_change(const EvaluateOptions& options, const Console& console) {
       fmt::format("alignment: {}", offset_text(offset, is_applied)),
       fmt::format("{} of {} core points have a distance; {:.1f}% of these are significant",
                   figures.known, cores.size(), 100.0 * share),
-      fmt::format("distance: median {:.4f} m, mean {:.4f} m, 5% below {:.4f} m, 95% below {:.4f} m",
-                  figures.median, figures.mean, figures.percentile_5, figures.percentile_95),
+      fmt::format("distance: median {} m, mean {} m, 5% below {} m, 95% below {} m",
+                  signed_text(figures.median, 4), signed_text(figures.mean, 4),
+                  signed_text(figures.percentile_5, 4), signed_text(figures.percentile_95, 4)),
       fmt::format("level of detection (95%): median {:.4f} m", figures.median_level),
       fmt::format("within {:.3g} m: {:.1f}% of the reference is in the cloud, {:.1f}% of the cloud "
                   "is in the reference",
