@@ -304,7 +304,7 @@ std::vector<Vertex> join_views(const ReachableSpace& space, const std::vector<Ve
   const NodePaths paths(space);
   TourCosts costs(views.size());
   geometry::parallel_for(views.size(), threads, [&](std::size_t i) {
-    if (stop.stop_requested()) throw Interrupted();
+    if (stop.stop_requested()) throw skycap::Interrupted();
     const NodePaths::Tree tree = paths.from(nodes[i]);
     for (std::size_t j = 0; j < views.size(); ++j) {
       costs.at(i, j) = static_cast<double>(tree.distances[nodes[j]]);
@@ -392,7 +392,7 @@ std::vector<Vertex> make_first_tour(const ReachableSpace& space, const SightCell
                                     const std::stop_token& stop) {
   std::vector<TourView> views(candidates.positions.size());
   geometry::parallel_for(views.size(), options.threads, [&](std::size_t i) {
-    if (stop.stop_requested()) throw Interrupted();
+    if (stop.stop_requested()) throw skycap::Interrupted();
     views[i] = best_direction(cells, candidates.positions[i], options);
   });
   const std::vector<Vertex> chosen = cover_targets(views, candidates, options);

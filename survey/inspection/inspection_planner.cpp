@@ -239,7 +239,7 @@ InspectionPlan plan_inspection(const InspectionOptions& options, const Inspectio
     if (run.report) run.report(what);
   };
   const auto check_stop = [&] {
-    if (run.stop.stop_requested()) throw Interrupted();
+    if (run.stop.stop_requested()) throw skycap::Interrupted();
   };
   const unsigned threads = geometry::thread_count(run.threads);
   report("computing normals");

@@ -41,8 +41,8 @@ std::set<std::string> find_fields(const std::string& source) {
 
 /// Quoted words that are not fields, and fields that missions cannot set.
 const std::set<std::string> not_from_missions = {
-    "continuation_steps",                                    // constant of the planner
-    "stereo.disparity_sigma_px", "stereo.disparity_step_px"  // only in sensor descriptions
+    "continuation_steps",  // constant of the planner
+    "noise.table", "stereo.disparity_sigma_px", "stereo.disparity_step_px"  // only in sensor files
 };
 
 TEST(FieldKeys, NameExistingMissionKeys) {

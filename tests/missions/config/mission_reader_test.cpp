@@ -86,7 +86,7 @@ TEST(MissionReader, SuggestsKeyInCorrectSection) {
             "m.yaml:4: key sensor.sigma is unknown; did you mean sensor.noise.sigma?");
   EXPECT_THAT(error_message(smallest + "colour_of_the_sky: blue\n"),
               HasSubstr("expected one of: name, seed, threads, scene, sensor, photo, "
-                        "inspection, planner, volumetric, uniform, pb_nbv, start, limits, "
+                        "inspection, planner, volumetric, uniform, pb_nbv, pattern, start, limits, "
                         "evaluation, paper, site, "
                         "flight, scan"));
 }

@@ -252,7 +252,7 @@ TEST(PlanInspection, StopsOnRequest) {
   source.request_stop();
   InspectionRun run;
   run.stop = source.get_token();
-  EXPECT_THROW(plan_inspection(quick_options(), cube_site(), run), Interrupted);
+  EXPECT_THROW(plan_inspection(quick_options(), cube_site(), run), skycap::Interrupted);
 }
 
 // Twin: all points seen by the final route, counted from the beginning.
