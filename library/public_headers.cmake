@@ -62,6 +62,7 @@ set(supporting_headers
   sim/sensors/depth_camera_config.h
   sim/sensors/navigation_errors.h
   sim/sensors/noise.h
+  sim/sensors/noise_table.h
   survey/see/method_variants.h
   survey/see/see_config.h
   survey/coverage_estimator.h

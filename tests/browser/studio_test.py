@@ -11,6 +11,8 @@ import unittest
 import urllib.request
 import zipfile
 
+from chromium import CHROMIUM, DRIVER, FLAGS, MISSION, main, run  # skips without selenium
+
 from selenium import webdriver
 from selenium.webdriver.chrome.options import Options
 from selenium.webdriver.chrome.service import Service
@@ -18,8 +20,6 @@ from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import Select, WebDriverWait
-
-from chromium import CHROMIUM, DRIVER, FLAGS, MISSION, main, run
 
 PATIENCE = int(os.environ.get("PATIENCE", "240"))  # seconds; only a failing test waits this long
 

@@ -144,7 +144,7 @@ Modules architecture() {
               {"package", "wizard", "config", "scan", "simulation", "evaluation", "session",
                "scene", "site_data", "support"});
   add_library({"comparison"}, {"sim", "survey", "flight"},
-              {"package", "config", "scan", "simulation", "evaluation", "session", "scene",
+              {"photo", "package", "config", "scan", "simulation", "evaluation", "session", "scene",
                "site_data", "support"});
   add_library({"report"}, {"sim", "survey", "flight"},
               {"package", "config", "scan", "simulation", "evaluation", "session", "scene",

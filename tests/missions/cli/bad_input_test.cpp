@@ -147,7 +147,7 @@ std::vector<BadInput> bad_inputs() {
       {"FlightWithoutABox", whole + "flight: {vehicle: generic}\n",
        "MISSION:3: key flight.vehicle requires flight.unknown_box"},
       {"UnknownVehicle", whole + "flight: {vehicle: kite}\n",
-       "MISSION:3: key flight.vehicle: unknown vehicle kite; expected one of: generic, "},
+       "MISSION:3: key flight.vehicle: unknown vehicle kite; expected one of: air_2s, "},
       {"NoVehicleFile", whole + "flight: {vehicle: kite.yaml}\n", "kite.yaml"},
       {"EmptyUnknownBox", whole + flight_mission("min: [0, 0, 0], max: [0, 1, 1]"),
        "key flight.unknown_box.max must be greater than flight.unknown_box.min"},
