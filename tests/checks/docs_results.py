@@ -19,7 +19,8 @@ ALIASES = {"flight.fleet.vehicles[].sorties[]": "flight.route.sorties[]",
 # Maps whose keys are names of parts or settings. Their fields are not listed individually.
 MAPS = ("settings", "planning_time_parts_s", "per_view[].planning_time_parts_s")
 # Objects of compare.json with the fields of summary.json.
-MAPS += ("coverage.surface", "coverage.planned", "coverage.flown", "coverage.patched")
+MAPS += ("coverage.surface", "coverage.planned", "coverage.flown", "coverage.patched",
+         "photos.planned", "photos.patched")
 
 TEAPOT = """
 scene: {model: 'builtin:teapot', longest_side: 10.0}
@@ -31,6 +32,14 @@ flight: {vehicle: m350_rtk, clearance: 2.0, pad_slope_deg: 1,
          unknown_box: {min: [-7, -7, 0], max: [7, 7, 7]}}
 site: {latitude_deg: 51.75, longitude_deg: -1.25, ellipsoid_height: 100, geoid_undulation: 47}
 limits: {max_views: 6}
+"""
+PHOTOS = """
+sensor: {photo_camera: mavic_3e_wide}
+photo: {gsd: 0.003, patterns: []}
+prior: [{file: house.city.json, role: target, uncertainty: 0.1}]
+limits: {stand_off: 3}
+flight: {vehicle: mavic_3e, free_space: assumed, position_error: 0.1, clearance: 2}
+site: {latitude_deg: 51.75, longitude_deg: -1.25, ellipsoid_height: 100, geoid_undulation: 47}
 """
 TARGET = "prior:\n  - {file: house.city.json, role: target}\n"
 CORNERS = [(x, y, z) for z in (0, 4) for x, y in ((-3, -3), (3, -3), (3, 3), (-3, 3))]
@@ -56,6 +65,7 @@ SURVEYS = {
     "consumer drone": (TEAPOT, ["--set", "flight.vehicle=mini_2", "--set", "flight.clearance=3.5",
                                 "--set", "limits.max_views=2"]),
     "no route": (TEAPOT, ["--set", "site.max_height=9"]),
+    "pattern": (TEAPOT, ["--planner", "dome", "--set", "site.max_height=14"]),
     "SEE++": (TEAPOT, ["--set", "flight.vehicle=none", "--planner", "see++"]),
 }
 
@@ -115,10 +125,14 @@ def documents(program, folder):
         yield "summary.json", (folder / name / "summary.json").read_text(encoding="utf-8")
     run(program, folder, "fly-test", "fleet", "--flights", "2", "--returns", "2", "--quiet")
     yield "fly_test.json", (folder / "fleet" / "fly_test.json").read_text(encoding="utf-8")
-    flown = (folder / "target" / "mission.csv").read_text(encoding="utf-8").splitlines(True)
-    (folder / "aborted.csv").write_text("".join(flown[:len(flown) // 2]), encoding="utf-8")
-    run(program, folder, "compare", "target", "aborted.csv", "--out", "compared", "--quiet")
-    yield "compare.json", (folder / "compared" / "compare.json").read_text(encoding="utf-8")
+    (folder / "photos.yaml").write_text(PHOTOS, encoding="utf-8")
+    run(program, folder, "plan", "photos.yaml", "--out", "photos", "--quiet", "--no-report")
+    for name in ("target", "photos"):
+        flown = (folder / name / "mission.csv").read_text(encoding="utf-8").splitlines(True)
+        (folder / "aborted.csv").write_text("".join(flown[:len(flown) // 2]), encoding="utf-8")
+        for planned in (name, f"{name}.yaml"):
+            run(program, folder, "compare", planned, "aborted.csv", "--out", "compared", "--quiet")
+            yield "compare.json", (folder / "compared" / "compare.json").read_text(encoding="utf-8")
     yield "evaluation.json", run(program, folder, "evaluate", "--cloud", "SEE++/cloud.ply",
                                  "--model", "SEE++.yaml", "--json", "--quiet")
 
