@@ -262,8 +262,8 @@ TEST(ColumnCloud, RejectsHostileFilesWithOneLine) {
       {"a.e57", "ASTM-E57"},
       {"a.doc", "1 2 3"}};
   for (const auto& [name, content] : files) {
-    const std::string message =
-        thrown_message([&] { read_column_cloud(folder.file(name, content)); });
+    const auto file = folder.file(name, content);
+    const std::string message = thrown_message([&] { read_column_cloud(file); });
     EXPECT_THAT(message, HasSubstr(name)) << message;
     EXPECT_THAT(message, testing::Not(HasSubstr("\n")));
   }
