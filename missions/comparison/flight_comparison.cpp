@@ -207,8 +207,9 @@ void find_missed(const package::PackagedSurvey& survey, FlightComparison& compar
     }
   }
   std::ranges::sort(comparison.missed_views);
-  const auto repeated = std::ranges::unique(comparison.missed_views);
-  comparison.missed_views.erase(repeated.begin(), repeated.end());
+  comparison.missed_views.erase(
+      std::unique(comparison.missed_views.begin(), comparison.missed_views.end()),
+      comparison.missed_views.end());
 }
 
 /// Returns the capture points of some views. The path to each contains the paths to the views
