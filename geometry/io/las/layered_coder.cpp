@@ -202,8 +202,8 @@ const Point14& Point14Coder<Coder>::code(Layers<Coder>& layers, const Point14& p
   return channels_[channel_].last;
 }
 
-/// Returns the changes from the last point of the same channel, or of the current channel if there
-/// is none.
+/// Returns the changes from the last point of the same channel, or of the current channel if the
+/// channel has no earlier point.
 template <typename Coder>
 std::uint32_t Point14Coder<Coder>::find_changed(const Point14& point, std::size_t channel) const {
   const Point14& last = channels_[channels_[channel].is_used ? channel : channel_].last;
