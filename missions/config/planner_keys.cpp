@@ -62,7 +62,7 @@ std::vector<Key> which_planner() {
           "Preset whose values the keys below override. paper: as published. building: tuned for "
           "buildings."),
       otherwise(
-          "minutes with sensor.capture: moving, otherwise views",
+          "minutes with a vehicle, otherwise views",
           choice_key(
               "planner.goal", {"minutes", "views"}, [](auto& m) -> auto& { return m.planner.goal; },
               "Goal of the planner skycap: minimise the flight time or the number of views. "

@@ -313,10 +313,7 @@ void complete_own_keys(MissionDocument& document, const Profiles& profiles) {
   if (document.flight.has_vehicle() && !document.has("planner.name")) {
     document.planner.name = survey::PlannerName::skycap;
   }
-  // Only an explicit sensor.capture changes the default goal; a scanner's default of moving capture
-  // does not.
-  if (document.has("sensor.capture") && document.sensor.options.is_moving() &&
-      !document.has("planner.goal")) {
+  if (document.flight.has_vehicle() && !document.has("planner.goal")) {
     document.planner.goal = PlannerGoal::minutes;
   }
   if (document.planner.file) {  // absolute, because a package stores the mission in another folder

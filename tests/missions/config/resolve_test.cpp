@@ -138,17 +138,16 @@ TEST(Resolve, RejectsKeysThatConflictWithDensityPerSquareMetre) {
   EXPECT_EQ(message("name: skycap, density_per_m2: 100, spacing: 0.06"), "");
 }
 
-// A moving sensor also measures en route, so the goal is to minimise the stops.
-TEST(Resolve, MinimisesTimeWhenSensorCapturesEnRoute) {
+// A vehicle has a flight time; without one, only the number of views is known.
+TEST(Resolve, MinimisesTimeWithVehicle) {
   const auto goal = [](const std::string& more) {
     return parsed("planner: {name: skycap" + more).text("planner.goal");
   };
-  const std::string moving =
-      "}\nflight: {vehicle: generic, unknown_box: {min: [0, 0, 0], max: [1, 1, 1]}}\n"
-      "sensor: {capture: moving}\n";
+  const std::string with_vehicle =
+      "}\nflight: {vehicle: generic, unknown_box: {min: [0, 0, 0], max: [1, 1, 1]}}\n";
   EXPECT_EQ(goal("}\n"), "views");
-  EXPECT_EQ(goal(moving), "minutes");
-  EXPECT_EQ(goal(", goal: views" + moving), "views");
+  EXPECT_EQ(goal(with_vehicle), "minutes");
+  EXPECT_EQ(goal(", goal: views" + with_vehicle), "views");
 }
 
 // In surveys with the M350 at 4 m/s, the measured cost of a view is 6.5 to 8 s. The stop includes
