@@ -62,9 +62,9 @@ void Conditions::validate(const Vehicle& vehicle) const {
     fail("the air density is " + std::to_string(air_density) +
          " kg/m^3; it must be between 0.3 and 2 (exclusive)");
   }
-  if (!(temperature_c > -40.0 && temperature_c < 60.0)) {
+  if (!(temperature_c >= -40.0 && temperature_c <= 60.0)) {
     fail("the temperature is " + std::to_string(temperature_c) +
-         " degrees Celsius; it must be between -40 and 60 (exclusive)");
+         " degrees Celsius; it must be between -40 and 60");
   }
 }
 

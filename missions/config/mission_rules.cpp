@@ -273,6 +273,11 @@ void check_flight(const MissionDocument& document) {
                     "must be at least three standard deviations of the sensor noise: " +
                         short_text(3.0 * sigma) + " m; raise it, or lower sensor.noise.sigma");
   }
+  if (const double max = vehicle.max_speed; flight.cruise_speed > max) {
+    document.reject("flight.cruise_speed", "must be at most " + short_text(max) +
+                                               " m/s, the maximum speed of " +
+                                               flight.vehicle_name + "; lower it");
+  }
   if (const double max = flight.required_vehicle().max_wind; flight.wind_speed >= max) {
     document.reject("flight.wind_speed", "must be less than the maximum wind of " +
                                              short_text(max) + " m/s that " + flight.vehicle_name +
