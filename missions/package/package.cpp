@@ -122,8 +122,8 @@ void plan_route(const evaluation::SimulationOptions& simulation, const session::
     choice.measured = &*measured;
     choice.keeps_reflight = options.views == flight::MissionViews::fastest;
   }
-  flight.replanned = replan_mission(simulation.survey, choice, record, coverage,
-                                    std::move(flight.route), stop);
+  flight.replanned =
+      replan_mission(simulation.survey, choice, record, coverage, std::move(flight.route), stop);
   flight.route = std::move(flight.replanned->choice.route);
 }
 

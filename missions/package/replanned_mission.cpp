@@ -42,8 +42,9 @@ std::string figures_text(const MissionFigures& figures) {
 }
 
 std::string variant_text(const MissionFigures& figures) {
-  std::string text = figures_text(figures) + fmt::format(", {:.2f}% of the measured surface predicted",
-                                                         100.0 * figures.predicted_coverage);
+  std::string text =
+      figures_text(figures) + fmt::format(", {:.2f}% of the measured surface predicted",
+                                          100.0 * figures.predicted_coverage);
   if (figures.predicted_reflight) {
     text += fmt::format(", {:.2f}% of its points in a predicted re-flight",
                         100.0 * *figures.predicted_reflight);
@@ -134,14 +135,14 @@ ReplannedMission replan_mission(const session::SurveyOptions& options, const Cho
 }
 
 Json replanned_json(const ReplannedMission& mission) {
-  Json json{{"is_flown", mission.choice.is_replanned},
-            {"reason", mission.choice.reason},
-            {"survey", to_json(mission.choice.survey)},
-            {"replanned", to_json(mission.choice.replanned)},
-            {"fly_through_duration_s", mission.choice.fly_through_duration
-                                           ? Json(*mission.choice.fly_through_duration)
-                                           : Json()},
-            {"computing_time_s", mission.choice.computing}};
+  Json json{
+      {"is_flown", mission.choice.is_replanned},
+      {"reason", mission.choice.reason},
+      {"survey", to_json(mission.choice.survey)},
+      {"replanned", to_json(mission.choice.replanned)},
+      {"fly_through_duration_s",
+       mission.choice.fly_through_duration ? Json(*mission.choice.fly_through_duration) : Json()},
+      {"computing_time_s", mission.choice.computing}};
   if (mission.again) json["reflight"] = again_json(*mission.again);
   if (mission.survey_again) json["survey_reflight"] = again_json(*mission.survey_again);
   if (mission.choice.is_replanned)

@@ -54,8 +54,8 @@ evaluation::SimulationOptions on_points(evaluation::SimulationOptions options) {
   sensor.noise = {};
   const double distance = options.survey.planner.view_distance /
                           geometry::Camera(sensor.camera).focal_length_px().minCoeff();
-  const int factor = std::clamp(
-      static_cast<int>(ray_spacing * options.survey.planner.spacing / distance), 1, 8);
+  const int factor =
+      std::clamp(static_cast<int>(ray_spacing * options.survey.planner.spacing / distance), 1, 8);
   sensor.camera.width = std::max(1, sensor.camera.width / factor);
   sensor.camera.height = std::max(1, sensor.camera.height / factor);
   return options;

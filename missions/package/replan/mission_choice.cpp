@@ -419,8 +419,10 @@ MissionChoice choose_mission(const flight::FlightOptions& flight,
         *figures.predicted_reflight < *choice.survey.predicted_reflight - equal_reflight) {
       if (choice.is_replanned) return;
       choice.reason = "a re-flight with the replanned views would measure " +
-                      share_text(*figures.predicted_reflight) + " of the measured points, with those "
-                      "of the survey " + share_text(*choice.survey.predicted_reflight);
+                      share_text(*figures.predicted_reflight) +
+                      " of the measured points, with those "
+                      "of the survey " +
+                      share_text(*choice.survey.predicted_reflight);
       choice.replanned = figures;
       return;
     }

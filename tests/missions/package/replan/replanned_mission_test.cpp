@@ -32,11 +32,10 @@ const TestFolder& packages() {
                                        "--set", "flight.views=replanned"});
     EXPECT_EQ(replanned.exit_code, 0) << replanned.err;
     EXPECT_THAT(replanned.out, HasSubstr("  coverage  "));
-    const auto survey = run_skycap(
-        {"plan", mission, "--out", folder / "survey", "--set", "flight.views=survey"});
+    const auto survey = run_skycap({"plan", mission, "--out", folder / "survey"});
     EXPECT_EQ(survey.exit_code, 0) << survey.err;
-    const auto fastest =
-        run_skycap({"plan", mission, "--out", folder / "fastest", "--threads", "1"});
+    const auto fastest = run_skycap({"plan", mission, "--out", folder / "fastest", "--threads", "1",
+                                     "--set", "flight.views=fastest"});
     EXPECT_EQ(fastest.exit_code, 0) << fastest.err;
     EXPECT_THAT(fastest.out, HasSubstr("  written   "));
     return true;
@@ -95,8 +94,8 @@ TEST(FastestMission, IsFastestThatKeepsPredictedReflight) {
   const auto figure = [&](const char* whose, const char* name) {
     return choice.at(whose).at(name).get<double>();
   };
-  const bool keeps = figure("replanned", "predicted_reflight") >=
-                     figure("survey", "predicted_reflight") - 0.005;
+  const bool keeps =
+      figure("replanned", "predicted_reflight") >= figure("survey", "predicted_reflight") - 0.005;
   const bool is_faster = figure("replanned", "duration_s") < figure("survey", "duration_s");
   const bool is_replanned = choice.at("is_flown").get<bool>();
   EXPECT_EQ(is_replanned, keeps && is_faster);
@@ -112,15 +111,19 @@ TEST(FastestMission, IsFastestThatKeepsPredictedReflight) {
 TEST(FastestMission, KeepsCoverageInSimulatedReflight) {
   const auto covered = [](const std::string& package) {
     return read_summary(package)
-        .at("flight").at("written").at(0).at("coverage_visible").get<double>();
+        .at("flight")
+        .at("written")
+        .at(0)
+        .at("coverage_visible")
+        .get<double>();
   };
   EXPECT_GT(covered("fastest"), covered("survey") - 0.02);
 }
 
 TEST(FastestMission, IsSameForAnyThreadCount) {
   const TestFolder& folder = packages();
-  const auto run = run_skycap(
-      {"plan", folder / "m.yaml", "--out", folder / "fastest threads", "--threads", "2"});
+  const auto run = run_skycap({"plan", folder / "m.yaml", "--out", folder / "fastest threads",
+                               "--threads", "2", "--set", "flight.views=fastest"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const std::vector<std::string> timed = {"summary.json", "report.html"};
   EXPECT_EQ(tests::results_in(folder / "fastest", timed),
@@ -139,9 +142,11 @@ TEST(FastestMission, ExportsSameFilesAgain) {
 }
 
 TEST(FastestMission, IsSurveyMissionIfThereIsNoChoice) {
-  const auto views = [](const std::vector<config::KeyOverride>& keys) {
+  const auto views = [](std::vector<config::KeyOverride> keys) {
+    keys.push_back({"--set", "flight.views", "fastest"});
     return config::parse_mission(flight_mission(), "m.yaml", keys).flight().views;
   };
+  EXPECT_EQ(flight::FlightOptions().views, flight::MissionViews::fastest);
   EXPECT_EQ(views({}), flight::MissionViews::fastest);
   EXPECT_EQ(views({{"--set", "flight.vehicle", "none"}}), flight::MissionViews::survey);
   EXPECT_EQ(views({{"--set", "planner.name", "see++"}}), flight::MissionViews::survey);
@@ -153,8 +158,8 @@ TEST(FastestMission, IsSurveyMissionIfThereIsNoChoice) {
 
 TEST(FastestMission, StatesWhySurveyViewsAreKept) {
   const TestFolder& folder = packages();
-  const auto run = run_skycap(
-      {"plan", folder / "m.yaml", "--out", folder / "one view", "--set", "limits.max_views=1"});
+  const auto run = run_skycap({"plan", folder / "m.yaml", "--out", folder / "one view", "--set",
+                               "limits.max_views=1", "--set", "flight.views=fastest"});
   EXPECT_THAT(run.out, HasSubstr("  written   survey views: no verified route through replanned "
                                  "views is faster\n"))
       << run.err;
