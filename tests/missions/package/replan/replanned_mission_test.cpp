@@ -156,15 +156,6 @@ TEST(FastestMission, IsSurveyMissionIfThereIsNoChoice) {
             flight::MissionViews::survey);
 }
 
-TEST(FastestMission, StatesWhySurveyViewsAreKept) {
-  const TestFolder& folder = packages();
-  const auto run = run_skycap({"plan", folder / "m.yaml", "--out", folder / "one view", "--set",
-                               "limits.max_views=1", "--set", "flight.views=fastest"});
-  EXPECT_THAT(run.out, HasSubstr("  written   survey views: no verified route through replanned "
-                                 "views is faster\n"))
-      << run.err;
-}
-
 TEST(ReplannedMission, KeepsSurveyFilesUnchanged) {
   const TestFolder& folder = packages();
   for (const char* name : {"views.csv", "cloud.ply", "coverage.ply", "free_space.bin"}) {
