@@ -37,6 +37,7 @@ enum class VisitOrder { shortest, survey };
 
 /// Set of views that the exported mission captures.
 enum class MissionViews {
+  fastest,    ///< The fastest verified mission that keeps the coverage of the survey's views.
   survey,     ///< The views of the survey.
   replanned,  ///< Views replanned from the surface that the survey measured.
 };
@@ -132,7 +133,7 @@ struct FlightOptions {
   double wind_from = 0.0;     ///< Direction the wind comes from, clockwise from north [rad].
   double temperature = 15.0;  ///< Battery temperature [°C].
   double reserve = 0.25;      ///< Fraction of the battery energy that remains at landing.
-  MissionViews views = MissionViews::survey;
+  MissionViews views = MissionViews::fastest;
   VisitOrder order = VisitOrder::shortest;
   FlightStyle style = FlightStyle::stop;  ///< Leg style in file formats that support curves.
   CaptureOptions capture;

@@ -192,10 +192,13 @@ std::vector<Key> conduct_keys() {
               "Flight pattern flown outside unknown_box before view planning starts: orbits around "
               "the box, or strips above it (for boxes wider than twice their height).")),
       choice_key(
-          "flight.views", {"survey", "replanned"}, flight(&flight::FlightOptions::views),
-          "Views of the exported mission. survey: the surveyed views. replanned: new views and a "
-          "new tour, optimised together to cover the measured surface in less time (planner "
-          "skycap only)."),
+          "flight.views", {"fastest", "survey", "replanned"}, flight(&flight::FlightOptions::views),
+          "Views of the exported mission. fastest: the faster of the next two that keeps the "
+          "coverage of the surveyed views in a predicted re-flight. survey: the surveyed views. "
+          "replanned: new views and a new tour, optimised together to cover the measured surface "
+          "in less time (planner skycap only). Without that planner, with flight.order: survey, "
+          "with flight.vehicles and in LiDAR surveys in flight, fastest selects the surveyed "
+          "views."),
       choice_key("flight.order", {"shortest", "survey"}, flight(&flight::FlightOptions::order),
                  "Order of the views in the exported mission: shortest tour found, or order of the "
                  "survey."),

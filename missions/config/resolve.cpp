@@ -159,7 +159,7 @@ void derive_scanner_flight(MissionDocument& document) {
         session::default_initial_pattern(compute_unknown_box(document));
   }
   // En-route measurements are made on the legs of the survey, so that its order is kept.
-  const bool keeps_views = flight.views == flight::MissionViews::survey;
+  const bool keeps_views = flight.views != flight::MissionViews::replanned;
   if (!document.has("flight.order") && keeps_views) flight.order = flight::VisitOrder::survey;
   if (!document.has("flight.cruise_speed")) {
     flight.cruise_speed =
@@ -183,6 +183,19 @@ void derive_pattern_order(MissionDocument& document) {
   if (survey::pattern_of(document.planner.name) && !document.has("flight.order")) {
     document.flight.options.order = flight::VisitOrder::survey;
   }
+}
+
+/// Selects the survey's views if there is no choice: other planners keep no surface model, an order
+/// belongs to its views, the time of a fleet is not that of one vehicle, and a flying scanner
+/// measures on the survey's own paths.
+void derive_mission_views(MissionDocument& document) {
+  flight::FlightOptions& flight = document.flight.options;
+  if (flight.views != flight::MissionViews::fastest) return;
+  const bool has_choice = document.flight.has_vehicle() && !document.is_for_known_target() &&
+                          document.planner.name == survey::PlannerName::skycap &&
+                          flight.order == flight::VisitOrder::shortest && !flight.is_fleet() &&
+                          !document.sensor.options.scans_in_flight();
+  if (!has_choice) flight.views = flight::MissionViews::survey;
 }
 
 /// Derives the sampling from planner.density_per_m2 for keys that are not set. The neighbourhood of
@@ -347,6 +360,7 @@ void complete_with_priors(MissionDocument& document,
   derive_scene_box(document);
   derive_scanner_flight(document);
   derive_pattern_order(document);
+  derive_mission_views(document);
   check_flight(document);
   check_fleet(document);
   derive_building_preset(document);

@@ -96,8 +96,9 @@ std::vector<std::uint32_t> collect_point_views(const session::SurveyRecord& reco
 
 /// Plans the route of a flown survey, including replanning.
 void plan_route(const evaluation::SimulationOptions& simulation, const session::RunOptions& run,
-                const session::SurveyRecord& record, const CoverageFigures& coverage,
-                const std::stop_token& stop, SurveyMission& flight) {
+                const session::SurveyRecord& record, std::span<const Eigen::Vector3f> normals,
+                const CoverageFigures& coverage, const std::stop_token& stop,
+                SurveyMission& flight) {
   const session::FlightRecord& flight_record = *record.flight_record;
   const flight::FlightOptions& options = simulation.survey.flight;
   const bool scans_in_flight = options.capture.scans_in_flight();
@@ -114,8 +115,15 @@ void plan_route(const evaluation::SimulationOptions& simulation, const session::
   }
   if (flight.route.capture_points.empty()) return;
   if (!record.surface) return;
-  flight.replanned = replan_mission(simulation.survey, choice_options(simulation.sensor, run),
-                                    record, coverage, std::move(flight.route), stop);
+  ChoiceOptions choice = choice_options(simulation.sensor, run);
+  std::optional<MeasuredSurface> measured;
+  if (!scans_in_flight && !normals.empty()) {
+    measured.emplace(simulation, record.cloud, normals, record.seed, run.threads);
+    choice.measured = &*measured;
+    choice.keeps_reflight = options.views == flight::MissionViews::fastest;
+  }
+  flight.replanned =
+      replan_mission(simulation.survey, choice, record, coverage, std::move(flight.route), stop);
   flight.route = std::move(flight.replanned->choice.route);
 }
 
@@ -137,11 +145,12 @@ void attempt(SurveyMission& flight, Work work) {
 std::optional<SurveyMission> planned_mission(const evaluation::SimulationOptions& simulation,
                                              const session::RunOptions& run,
                                              const session::SurveyRecord& record,
+                                             std::span<const Eigen::Vector3f> normals,
                                              const CoverageFigures& coverage,
                                              const std::stop_token& stop) {
   if (!record.flight_record) return std::nullopt;
   SurveyMission flight;
-  attempt(flight, [&] { plan_route(simulation, run, record, coverage, stop, flight); });
+  attempt(flight, [&] { plan_route(simulation, run, record, normals, coverage, stop, flight); });
   return flight;
 }
 
@@ -293,20 +302,15 @@ std::optional<SurveyMission> stage_package(const config::MissionSetup& setup,
            name == fly_test_name || name == report_name || name == field_sheet_name ||
            name == profile_name || is_flight_file(name);
   });
-  std::vector<Eigen::Vector3f> normals;
-  std::optional<SurveyMission> flight;
-  geometry::parallel_for(2, threads, [&](std::size_t part) {
-    if (part == 0) {
-      flight = planned_mission(setup.simulation, setup.run, record, coverage, stop);
-      if (flight) {
-        stage_mission(setup.name, setup.flight(), setup.run.threads, record, *flight, folder, stop);
-        flight->written = written_mission(setup.simulation, coverage, *flight, stop);
-      }
-    } else {
-      const double radius = 2.0 * setup.survey().planner.resolution_radius;
-      normals = cloud_normals(record.cloud, sensor_positions(record), radius, threads, stop);
-    }
-  });
+  const std::vector<Eigen::Vector3f> normals =
+      cloud_normals(record.cloud, sensor_positions(record),
+                    2.0 * setup.survey().planner.resolution_radius, threads, stop);
+  std::optional<SurveyMission> flight =
+      planned_mission(setup.simulation, setup.run, record, normals, coverage, stop);
+  if (flight) {
+    stage_mission(setup.name, setup.flight(), setup.run.threads, record, *flight, folder, stop);
+    flight->written = written_mission(setup.simulation, coverage, *flight, stop);
+  }
   if (flight && flight->failure.empty() && !flight->route.sorties.empty()) {
     folder.write(field_sheet_name, sheet_of(setup, record, coverage, *flight));
   }
@@ -352,7 +356,7 @@ PackageSummary parse_package_summary(const std::string& text, const std::string&
         summary.landing_surfaces = measured_landing_surfaces(json["flight"]["grounds"], name);
       }
       summary.has_choice = json["flight"].contains("replanned");
-      if (summary.has_choice && summary.mission.flight().views == flight::MissionViews::replanned) {
+      if (summary.has_choice && summary.mission.flight().views != flight::MissionViews::survey) {
         summary.replanned = replanned_capture_points(json["flight"]["replanned"], name);
       }
     }

@@ -21,7 +21,9 @@ Json to_json(const MissionFigures& figures) {
           {"length_m", figures.length},
           {"views", figures.views},
           {"pieces", figures.segments},
-          {"predicted_coverage", figures.predicted_coverage}};
+          {"predicted_coverage", figures.predicted_coverage},
+          {"predicted_reflight",
+           figures.predicted_reflight ? Json(*figures.predicted_reflight) : Json()}};
 }
 
 Json capture_points_json(const CapturePlan& capture_points) {
@@ -37,6 +39,17 @@ Json capture_points_json(const CapturePlan& capture_points) {
 std::string figures_text(const MissionFigures& figures) {
   return fmt::format("{} views, {} segments, {:.0f} m, {:.0f} s", figures.views, figures.segments,
                      figures.length, figures.duration);
+}
+
+std::string variant_text(const MissionFigures& figures) {
+  std::string text =
+      figures_text(figures) + fmt::format(", {:.2f}% of the measured surface predicted",
+                                          100.0 * figures.predicted_coverage);
+  if (figures.predicted_reflight) {
+    text += fmt::format(", {:.2f}% of its points in a predicted re-flight",
+                        100.0 * *figures.predicted_reflight);
+  }
+  return text;
 }
 
 std::string percent(double share) { return fmt::format("{:.2f}%", 100.0 * share); }
@@ -113,21 +126,23 @@ ReplannedMission replan_mission(const session::SurveyOptions& options, const Cho
                      collect_all_views(record), std::move(present), plan, stop),
       {},
       {}};
-  if (coverage.fly_again && result.choice.is_replanned) {
-    result.survey_again = simulate_reflight(coverage, surveyed);
-  }
-  if (coverage.fly_again) {
-    result.again =
-        simulate_reflight(coverage, session::measured_views(options.flight, result.choice.route));
-  }
+  // The default mission is evaluated with its files (written_mission.h).
+  if (!coverage.fly_again || choice.keeps_reflight || stop.stop_requested()) return result;
+  if (result.choice.is_replanned) result.survey_again = simulate_reflight(coverage, surveyed);
+  result.again =
+      simulate_reflight(coverage, session::measured_views(options.flight, result.choice.route));
   return result;
 }
 
 Json replanned_json(const ReplannedMission& mission) {
-  Json json{{"is_flown", mission.choice.is_replanned},
-            {"survey", to_json(mission.choice.survey)},
-            {"replanned", to_json(mission.choice.replanned)},
-            {"computing_time_s", mission.choice.computing}};
+  Json json{
+      {"is_flown", mission.choice.is_replanned},
+      {"reason", mission.choice.reason},
+      {"survey", to_json(mission.choice.survey)},
+      {"replanned", to_json(mission.choice.replanned)},
+      {"fly_through_duration_s",
+       mission.choice.fly_through_duration ? Json(*mission.choice.fly_through_duration) : Json()},
+      {"computing_time_s", mission.choice.computing}};
   if (mission.again) json["reflight"] = again_json(*mission.again);
   if (mission.survey_again) json["survey_reflight"] = again_json(*mission.survey_again);
   if (mission.choice.is_replanned)
@@ -156,16 +171,21 @@ std::optional<CapturePlan> replanned_capture_points(const Json& json, const std:
 
 std::string replanned_text(const ReplannedMission& mission) {
   const package::MissionChoice& choice = mission.choice;
-  std::string text = choice.is_replanned ? "  replanned " + figures_text(choice.replanned) +
-                                               "; survey views: " + figures_text(choice.survey)
-                                         : "  replanned no plan is faster than the survey views: " +
-                                               figures_text(choice.survey);
-  text += "\n  coverage  " + percent(choice.replanned.predicted_coverage) +
-          " of the measured surface predicted; survey views: " +
-          percent(choice.survey.predicted_coverage);
-  if (mission.again) text += "; " + again_text(*mission.again);
+  std::string text = fmt::format("  written   {} views: {}\n",
+                                 choice.is_replanned ? "replanned" : "survey", choice.reason);
+  text += "  survey    views: " + variant_text(choice.survey) + "\n";
+  if (choice.replanned.duration != choice.survey.duration) {
+    text += "  replanned views: " + variant_text(choice.replanned) + "\n";
+  }
+  if (choice.fly_through_duration) {
+    text += fmt::format(
+        "  passing   {:.0f} s if flown through without stops; not in the autopilot's file, which "
+        "cannot contain the curve; set flight.style: fly-through\n",
+        *choice.fly_through_duration);
+  }
+  if (mission.again) text += "  coverage  " + again_text(*mission.again);
   if (mission.survey_again) text += "; survey views: " + again_text(*mission.survey_again);
-  return text + "\n";
+  return mission.again ? text + "\n" : text;
 }
 
 }  // namespace skycap::missions::package

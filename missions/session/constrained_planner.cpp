@@ -89,7 +89,7 @@ void ConstrainedPlanner::finish(SurveyRecord& record) {
   record_estimate(*impl_->planner, record);
   const survey::CoverageEstimator* const estimator = impl_->planner->estimator();
   if (estimator != nullptr && impl_->flight &&
-      impl_->options.flight.views == flight::MissionViews::replanned) {
+      impl_->options.flight.views != flight::MissionViews::survey) {
     record.surface = estimator->known_surface(surface_targets);
   }
   record.cloud = impl_->planner->take_cloud();

@@ -45,7 +45,7 @@ struct SurveyRecord {
 
   /// Final estimate of planners that estimate coverage; otherwise empty.
   std::optional<survey::surfel::SurveyEstimate> estimate;
-  /// Measured surface, if replanning is enabled; otherwise null.
+  /// Measured surface, if the views may be replanned; otherwise null.
   std::shared_ptr<const survey::surfel::GainField> surface;
   /// Completion rule of the planner, see CoverageEstimator::stop_rule(); empty for other planners.
   std::string stop_rule{};

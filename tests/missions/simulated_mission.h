@@ -6,8 +6,8 @@
 namespace skycap::tests {
 
 /// Returns a mission around a scene. Its surface and unknown space are in a box from `south_west`
-/// to `north_east_top`. The pad is so far away that DJI vehicles climb before they return from
-/// behind the scene.
+/// to `north_east_top`. The exported mission has the survey's views in their shortest order. The
+/// pad is so far away that DJI vehicles climb before they return from behind the scene.
 inline std::string flight_mission_around(const std::string& scene, const std::string& south_west,
                                          const std::string& north_east_top) {
   return "scene: " + scene +
@@ -23,7 +23,7 @@ inline std::string flight_mission_around(const std::string& scene, const std::st
          south_west + ", 0.3], max: [" + north_east_top +
          "]}\n"
          "  min_gain: 0.02\n"
-         "flight: {vehicle: generic, takeoff: [-75, 0, 0],\n"
+         "flight: {vehicle: generic, takeoff: [-75, 0, 0], views: survey,\n"
          "         unknown_box: {min: [" +
          south_west + ", 0], max: [" + north_east_top +
          "]}}\n"

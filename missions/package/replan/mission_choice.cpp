@@ -7,7 +7,9 @@
 #include <optional>
 #include <utility>
 
+#include "flight/export/text.h"
 #include "flight/motion/motion.h"
+#include "flight/route/curved_flight.h"
 #include "flight/route/leg_costs.h"
 #include "flight/rtl/returnable_space.h"
 #include "geometry/error.h"
@@ -15,6 +17,7 @@
 #include "geometry/parallel.h"
 #include "geometry/pose/platform.h"
 #include "missions/package/replan/observation_sum.h"
+#include "missions/session/en_route_frames.h"
 
 namespace skycap::missions::package {
 namespace {
@@ -30,6 +33,13 @@ constexpr double clearance_margin = 0.05;
 /// Tolerance for equal coverage. Repeated simulated flights with the same views differ by several
 /// times this value.
 constexpr double equal_coverage = 5e-4;
+
+/// Tolerance for equal coverage in predicted re-flights.
+constexpr double equal_reflight = 5e-3;
+
+/// Additional coverage that the search aims at if re-flights are compared. The search selects the
+/// views whose coverage it overestimates.
+constexpr double reflight_margin = 6e-3;
 
 /// Penalty per view in fly-through capture [s]. Without it, tours would have so many views that
 /// moves of single views have no effect.
@@ -95,6 +105,12 @@ class MissionProblem {
     problem_.observations = [this](const View& view) {
       return mount_ ? std::vector<Observation>() : surface_.observations(view);
     };
+    if (choice.measured != nullptr && !mount_) {
+      problem_.remove_occluded = [this, measured = choice.measured](
+                                     const View& view, std::vector<Observation>& observations) {
+        remove_occluded(*measured, view, observations);
+      };
+    }
     if (mount_) {
       problem_.leg_observations = [this](const View* from, const View* to) {
         return leg_observations({view_position(from), view_position(to)}, from, to);
@@ -167,7 +183,39 @@ class MissionProblem {
     return plan;
   }
 
+  /// Returns the duration of the route's stations as a fly-through [s], if it is faster.
+  std::optional<double> fly_through_duration(const flight::FlightOptions& flight,
+                                             flight::Route route) const {
+    if (flight.style != flight::FlightStyle::stop || mount_ || flight.capture.settle > 0.0 ||
+        flight.is_fleet()) {
+      return std::nullopt;
+    }
+    flight::FlightOptions passing = flight;
+    passing.style = flight::FlightStyle::pass;
+    route.options.style = passing.style;
+    route.options.passing = passing.route(route.options.takeoff).passing;
+    const double duration = flight::min_duration(route);
+    flight::add_curves(route, space_, motion_, costs_);
+    const double faster = flight::min_duration(route);
+    return faster < duration ? std::optional(faster) : std::nullopt;
+  }
+
  private:
+  void remove_occluded(const MeasuredSurface& measured, const View& view,
+                       std::vector<Observation>& observations) const {
+    std::vector<Eigen::Vector3f> targets;
+    targets.reserve(observations.size());
+    for (const Observation& observation : observations) {
+      targets.push_back(surface_.targets()[observation.target].position);
+    }
+    const std::vector<std::uint8_t> in_sight = measured.in_sight(view.position, targets);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < observations.size(); ++i) {
+      if (in_sight[i] != 0) observations[kept++] = observations[i];
+    }
+    observations.resize(kept);
+  }
+
   const Vector3d& view_position(const View* view) const {
     return view == nullptr ? home_ : view->position;
   }
@@ -295,16 +343,21 @@ class MissionProblem {
   TourProblem problem_;
 };
 
-/// Returns an empty value if planning the route fails. The previous route is then used.
-std::optional<flight::Route> verified_route(const PlanRoute& plan, const std::vector<View>& views) {
+/// Returns an empty value if planning the route fails, and the reason. The previous route is then
+/// used.
+std::optional<flight::Route> verified_route(const PlanRoute& plan, const std::vector<View>& views,
+                                            std::string& reason) {
   try {
     return plan({views, std::vector<std::vector<Vector3d>>(views.size())});
   } catch (const Interrupted&) {
     return std::nullopt;
-  } catch (const Error&) {
+  } catch (const Error& error) {
+    reason = std::string("the route through the replanned views is not verified: ") + error.what();
     return std::nullopt;
   }
 }
+
+std::string share_text(double share) { return flight::fixed(100.0 * share, 1) + "%"; }
 
 }  // namespace
 
@@ -333,10 +386,16 @@ MissionChoice choose_mission(const flight::FlightOptions& flight,
   const MissionProblem asked(flight, planner, options, surface, space, present);
   const TourProblem& problem = asked.problem();
   const std::vector<View> views = asked.collect_views(present);
+  const auto predicted_reflight = [&](const flight::Route& route) -> std::optional<double> {
+    if (options.measured == nullptr) return std::nullopt;
+    return options.measured->predicted_reflight(session::measured_views(flight, route), stop);
+  };
   MissionChoice choice;
   choice.survey = compute_figures(present, asked.predicted_coverage(present));
+  choice.survey.predicted_reflight = predicted_reflight(present);
   choice.replanned = choice.survey;
-  choice.route = std::move(present);
+  choice.reason = "no verified route through replanned views is faster";
+  flight::Route best = present;
   const double min = choice.survey.predicted_coverage - equal_coverage;
   // The coverage of a scanner also depends on the paths that can be flown.
   const double target_coverage =
@@ -348,21 +407,48 @@ MissionChoice choose_mission(const flight::FlightOptions& flight,
 
   const auto try_tour = [&](const FoundTour& tour) {
     if (stop.stop_requested()) return;
-    std::optional<flight::Route> route = verified_route(plan, tour.views);
+    std::string failure;
+    std::optional<flight::Route> route = verified_route(plan, tour.views, failure);
+    if (!route && !failure.empty() && !choice.is_replanned) choice.reason = failure;
     if (!route) return;
-    const MissionFigures figures = compute_figures(*route, asked.predicted_coverage(*route));
-    if (figures.predicted_coverage < min || cost(figures) >= cost(choice.replanned)) return;
+    MissionFigures figures = compute_figures(*route, asked.predicted_coverage(*route));
+    const MissionFigures& to_beat = choice.is_replanned ? choice.replanned : choice.survey;
+    if (figures.predicted_coverage < min || cost(figures) >= cost(to_beat)) return;
+    figures.predicted_reflight = predicted_reflight(*route);
+    if (options.keeps_reflight &&
+        *figures.predicted_reflight < *choice.survey.predicted_reflight - equal_reflight) {
+      if (choice.is_replanned) return;
+      choice.reason = "a re-flight with the replanned views would measure " +
+                      share_text(*figures.predicted_reflight) +
+                      " of the measured points, with those "
+                      "of the survey " +
+                      share_text(*choice.survey.predicted_reflight);
+      choice.replanned = figures;
+      return;
+    }
     choice.replanned = figures;
-    choice.route = *std::move(route);
+    best = *std::move(route);
     choice.is_replanned = true;
+    choice.reason = "fastest verified mission that keeps the coverage of the survey's views";
   };
   const FoundTour spared = remove_views(problem, views, min);
   if (spared.views.size() < views.size()) try_tour(spared);
   SearchSettings search = options.search;
   if (problem.leg_observations) search.moves_per_view /= leg_cost_factor;
   if (problem.bend_time) search.moves_per_view *= more_passed_views;
-  try_tour(anneal(problem, spared.views, target_coverage, search, stop));
+  if (options.keeps_reflight) search.moves_per_view = search.moves_per_view * 3 / 5;
+  const double margin = options.keeps_reflight ? reflight_margin : 0.0;
+  try_tour(anneal(problem, spared.views, target_coverage + margin, search, stop));
 
+  if (stop.stop_requested()) {
+    choice.is_replanned = false;
+    choice.replanned = choice.survey;
+    choice.reason = "interrupted";
+  }
+  choice.route = choice.is_replanned ? std::move(best) : std::move(present);
+  if (!stop.stop_requested()) {
+    choice.fly_through_duration = asked.fly_through_duration(flight, choice.route);
+  }
   choice.capture_points = asked.capture_plan(choice.route);
   choice.computing =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

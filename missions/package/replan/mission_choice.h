@@ -8,7 +8,9 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <stop_token>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -17,6 +19,7 @@
 #include "flight/flight_options.h"
 #include "flight/route/route.h"
 #include "geometry/pose/pose.h"
+#include "missions/package/replan/measured_surface.h"
 #include "missions/package/replan/tour_search.h"
 #include "sim/sensors/scanner_field.h"
 #include "survey/planners/planner_options.h"
@@ -32,6 +35,9 @@ struct MissionFigures {
   std::size_t segments = 0;  ///< Number of path segments; the vehicle stops after each.
   double predicted_coverage =
       0.0;  ///< Predicted covered fraction of the surface measured by the survey.
+  /// Fraction of the measured points that a predicted re-flight measures again, see
+  /// MeasuredSurface. Empty without such a surface.
+  std::optional<double> predicted_reflight{};
 };
 
 /// Returns the figures of a verified route with the given predicted coverage.
@@ -49,8 +55,13 @@ struct MissionChoice {
   bool is_replanned = false;   ///< True if the replanned route is the better one.
   CapturePlan capture_points;  ///< Stations of the route.
   MissionFigures survey;       ///< Figures of the survey's views that have a verified return.
-  /// Figures of the best replanned mission; equal to `survey` if no better one was found.
+  /// Figures of the best replanned mission, or of the fastest rejected one. Equal to `survey` if
+  /// none was found.
   MissionFigures replanned;
+  std::string reason;  ///< Reason for the selection, as a clause.
+  /// Duration of a verified fly-through of the stations [s], if it is faster than the flight with
+  /// stops that the route contains.
+  std::optional<double> fly_through_duration;
   double computing = 0.0;  ///< Computation time including verification of routes [s].
 };
 
@@ -62,14 +73,18 @@ struct ChoiceOptions {
   SearchSettings search;
   sim::ScannerKind scanner = sim::ScannerKind::ring;  ///< Type of a continuously measuring scanner.
   unsigned threads = 0;  ///< Number of threads (0: all processors). Does not affect the result.
+  /// Points of the survey, for the sight of views and for predicted re-flights. Null: neither.
+  const MeasuredSurface* measured = nullptr;
+  /// Rejects missions whose predicted re-flight covers less than that of the survey's views, by
+  /// more than half a percentage point. Requires `measured`.
+  bool keeps_reflight = false;
 };
 
 /// Improves `present`, the route through the survey's views with a verified return, and falls back
 /// to it. The selected mission never has a lower predicted coverage. It is slower only if it
 /// additionally covers surface observed from `surveyed`, at the price set in `options`. `surveyed`
 /// contains the survey's views and its en-route frames. Routes are verified in `space`. Tours for
-/// which `plan` throws an Error are rejected. After a stop request, returns the best mission found
-/// so far.
+/// which `plan` throws an Error are rejected. After a stop request, returns `present`.
 MissionChoice choose_mission(const flight::FlightOptions& flight,
                              const survey::PlannerOptions& planner, const ChoiceOptions& options,
                              const survey::surfel::GainField& surface,

@@ -19,6 +19,9 @@ struct TourProblem {
 
   std::span<const survey::surfel::GainField::Target> targets;
   std::function<std::vector<survey::surfel::Observation>(const View&)> observations;
+  /// Removes the observations whose line of sight is blocked by surface that `observations` is too
+  /// coarse for. Evaluated last because it is expensive. Empty without a finer surface.
+  std::function<void(const View&, std::vector<survey::surfel::Observation>&)> remove_occluded{};
   /// Returns the observations on the straight path between two views, where null is the home
   /// position. The result must be the same in both directions. Empty if the sensor does not measure
   /// en route.

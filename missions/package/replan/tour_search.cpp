@@ -25,6 +25,12 @@ std::vector<View> viewed_from(const Stops& stops) {
   return views;
 }
 
+std::vector<ObservationStrength> strengths_in_sight(const TourProblem& problem, const View& view) {
+  std::vector<survey::surfel::Observation> observations = problem.observations(view);
+  if (problem.remove_occluded) problem.remove_occluded(view, observations);
+  return observation_strengths(observations);
+}
+
 /// State of the search: a tour with its coverage and duration.
 class Search {
  public:
@@ -39,7 +45,7 @@ class Search {
         covered_(problem.targets) {
     for (const View& view : tour) {
       const std::shared_ptr<Stop> stop = moves_.stop(view);
-      stop->strengths = observation_strengths(problem.observations(view));
+      stop->strengths = strengths_in_sight(problem, view);
       covered_.add(stop->strengths);
       stops_.push_back(stop);
     }
@@ -81,7 +87,8 @@ class Search {
     return time + price_ * std::max(0.0, target_coverage_ - covered_.covered());
   }
 
-  /// Applies the move if the new cost is at most `worst`. Inexpensive checks are made first.
+  /// Applies the move if the new cost is at most `worst`. Inexpensive checks are made first: until
+  /// the last one, the added view observes all that a coarse surface lets it see.
   bool accept(const Move& move, double worst) {
     if (legs_.min(move.stops) > worst) return false;
     if (move.added) {
@@ -93,6 +100,11 @@ class Search {
     leg_doses_.change(covered_, stops_, move.stops);
     double time = legs_.min(move.stops);
     while (cost(time) <= worst && legs_.ask_next(move.stops)) time = legs_.min(move.stops);
+    if (cost(time) <= worst && move.added && problem_.remove_occluded) {
+      covered_.remove(move.added->strengths);
+      move.added->strengths = strengths_in_sight(problem_, move.added->view);
+      covered_.add(move.added->strengths);
+    }
     if (cost(time) > worst || (move.added && !problem_.has_return_path(move.added->view))) {
       leg_doses_.change(covered_, move.stops, stops_);
       change_back(move.removed, move.added.get());
@@ -173,7 +185,7 @@ FoundTour anneal(const TourProblem& problem, const std::vector<View>& tour, doub
 
 double covered_by(const TourProblem& problem, const std::vector<View>& views) {
   ObservationSum covered(problem.targets);
-  for (const View& view : views) covered.add(observation_strengths(problem.observations(view)));
+  for (const View& view : views) covered.add(strengths_in_sight(problem, view));
   if (!problem.leg_observations) return covered.covered();
   for (std::size_t i = 0; i <= views.size() && !views.empty(); ++i) {
     const auto* from = i == 0 ? nullptr : &views[i - 1];

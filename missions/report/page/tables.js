@@ -140,11 +140,16 @@ function anew_parts(data) {
   const number = (content) => ({ number: content });
   const f = (path, form) => number(figure(data, "flight.replanned." + path, form));
   const row = (name, key) => [name, f(key + ".views", "count"), f(key + ".pieces", "count"), f(key + ".length_m", "metres"),
-    f(key + ".duration_s", "minutes"), f(key + ".predicted_coverage", "share")];
+    f(key + ".duration_s", "minutes"), f(key + ".predicted_coverage", "share"),
+    typeof anew[key].predicted_reflight === "number" ? f(key + ".predicted_reflight", "share") : number("")];
   const again = value_at(anew, "reflight.coverage_visible");
-  return [element("h3", {}, "Replanned views"),
-    table(["", "Views", "Segments", "Length", "Time", "Predicted coverage"].map((name, i) => (i ? number(name) : name)),
-      [row("Survey views", "survey"), row(anew.is_flown ? "Replanned, in the mission" : "No faster plan found", "replanned")]),
+  const passing = typeof anew.fly_through_duration_s === "number";
+  return [element("h3", {}, "Choice of the views"),
+    anew.reason ? element("p", {}, "The mission contains the " + (anew.is_flown ? "replanned" : "survey") + " views: " + anew.reason + ".") : null,
+    table(["", "Views", "Segments", "Length", "Time", "Predicted coverage", "Points measured again"].map((name, i) => (i ? number(name) : name)),
+      [row("Survey views", "survey"), row(anew.is_flown ? "Replanned, in the mission" : "Replanned, not in the mission", "replanned")]),
+    passing ? element("p", {}, "A fly-through of these views would take ", figure(data, "flight.replanned.fly_through_duration_s", "minutes"),
+      ". The file of the autopilot cannot contain its curve (flight.style: fly-through).") : null,
     typeof again === "number" ? element("p", {}, "In a simulated re-flight, the mission covers ",
       figure(data, "flight.replanned.reflight.coverage_visible", "share"), " of the visible surface.") : null].filter(Boolean);
 }

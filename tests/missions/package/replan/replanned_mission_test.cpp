@@ -34,6 +34,10 @@ const TestFolder& packages() {
     EXPECT_THAT(replanned.out, HasSubstr("  coverage  "));
     const auto survey = run_skycap({"plan", mission, "--out", folder / "survey"});
     EXPECT_EQ(survey.exit_code, 0) << survey.err;
+    const auto fastest = run_skycap({"plan", mission, "--out", folder / "fastest", "--threads", "1",
+                                     "--set", "flight.views=fastest"});
+    EXPECT_EQ(fastest.exit_code, 0) << fastest.err;
+    EXPECT_THAT(fastest.out, HasSubstr("  written   "));
     return true;
   }();
   EXPECT_TRUE(are_made);
@@ -73,6 +77,83 @@ TEST(ReplannedMission, IsComparedWithSurveyMission) {
   EXPECT_EQ(compared.at("duration_s"), own.at("route").at("duration_s"));
   EXPECT_EQ(compared.at("length_m"), own.at("route").at("length_m"));
   EXPECT_EQ(compared.at("views"), own.at("route").at("stations"));
+}
+
+/// Duration of the mission as its own file flies it.
+double file_duration(const json& summary, const std::string& name) {
+  for (const json& file : summary.at("flight").at("files")) {
+    if (file.at("name") == name) return file.at("duration_s").get<double>();
+  }
+  ADD_FAILURE() << name;
+  return 0.0;
+}
+
+TEST(FastestMission, IsFastestThatKeepsPredictedReflight) {
+  const json summary = read_summary("fastest"), choice = summary.at("flight").at("replanned");
+  EXPECT_EQ(summary.at("settings").at("flight.views"), "fastest");
+  const auto figure = [&](const char* whose, const char* name) {
+    return choice.at(whose).at(name).get<double>();
+  };
+  const bool keeps =
+      figure("replanned", "predicted_reflight") >= figure("survey", "predicted_reflight") - 0.005;
+  const bool is_faster = figure("replanned", "duration_s") < figure("survey", "duration_s");
+  const bool is_replanned = choice.at("is_flown").get<bool>();
+  EXPECT_EQ(is_replanned, keeps && is_faster);
+  EXPECT_FALSE(choice.at("reason").get<std::string>().empty());
+  EXPECT_NEAR(file_duration(summary, "mission.plan"),
+              figure(is_replanned ? "replanned" : "survey", "duration_s"), 0.01);
+  EXPECT_LE(file_duration(summary, "mission.plan"),
+            file_duration(read_summary("survey"), "mission.plan"));
+}
+
+// The prediction uses the measured points only, the re-flight the ground truth. The tolerance for
+// the coverage of the survey's views is 0.005; the scatter of a re-flight of few samples is larger.
+TEST(FastestMission, KeepsCoverageInSimulatedReflight) {
+  const auto covered = [](const std::string& package) {
+    return read_summary(package)
+        .at("flight")
+        .at("written")
+        .at(0)
+        .at("coverage_visible")
+        .get<double>();
+  };
+  EXPECT_GT(covered("fastest"), covered("survey") - 0.02);
+}
+
+TEST(FastestMission, IsSameForAnyThreadCount) {
+  const TestFolder& folder = packages();
+  const auto run = run_skycap({"plan", folder / "m.yaml", "--out", folder / "fastest threads",
+                               "--threads", "2", "--set", "flight.views=fastest"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const std::vector<std::string> timed = {"summary.json", "report.html"};
+  EXPECT_EQ(tests::results_in(folder / "fastest", timed),
+            tests::results_in(folder / "fastest threads", timed));
+}
+
+TEST(FastestMission, ExportsSameFilesAgain) {
+  const TestFolder& folder = packages();
+  const auto run = run_skycap({"export", folder / "fastest", "--format", "plan", "--format", "csv",
+                               "--out", folder / "fastest again"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  for (const char* file : {"mission.plan", "mission.csv"}) {
+    EXPECT_EQ(read_content(folder / ("fastest again/" + std::string(file))),
+              read_content(folder / ("fastest/" + std::string(file))));
+  }
+}
+
+TEST(FastestMission, IsSurveyMissionIfThereIsNoChoice) {
+  const auto views = [](std::vector<config::KeyOverride> keys) {
+    keys.push_back({"--set", "flight.views", "fastest"});
+    return config::parse_mission(flight_mission(), "m.yaml", keys).flight().views;
+  };
+  EXPECT_EQ(flight::FlightOptions().views, flight::MissionViews::fastest);
+  EXPECT_EQ(views({}), flight::MissionViews::fastest);
+  EXPECT_EQ(views({{"--set", "flight.vehicle", "none"}}), flight::MissionViews::survey);
+  EXPECT_EQ(views({{"--set", "planner.name", "see++"}}), flight::MissionViews::survey);
+  EXPECT_EQ(views({{"--set", "planner.name", "rings"}}), flight::MissionViews::survey);
+  EXPECT_EQ(views({{"--set", "flight.order", "survey"}}), flight::MissionViews::survey);
+  EXPECT_EQ(views({{"--set", "flight.vehicles", "[generic, generic]"}}),
+            flight::MissionViews::survey);
 }
 
 TEST(ReplannedMission, KeepsSurveyFilesUnchanged) {
