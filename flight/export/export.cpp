@@ -22,14 +22,15 @@ using Eigen::Vector3d;
 /// Format with its functions.
 struct FormatRecord {
   FormatInfo info;
+  bool is_local = false;
   bool supports_curves = false;
   bool captures_images = false;
   bool holds_photo_runs = false;
-  std::string (*write)(const FlightPlan& plan);
-  Problems (*validate)(const std::string& content);
+  std::string (*write)(const FlightPlan& plan) = nullptr;
+  Problems (*validate)(const std::string& content) = nullptr;
   /// Returns positions in the local frame [m], in file order.
   std::vector<Vector3d> (*read_positions)(const std::string& content, const Site& site,
-                                          const Vector3d& pad);
+                                          const Vector3d& pad) = nullptr;
   /// Returns notes on omitted data.
   std::vector<std::string> (*notes)(const FlightPlan& plan) = nullptr;
 };
@@ -138,25 +139,30 @@ constexpr auto records = std::to_array<FormatRecord>({
             const auto& pad) { return geodetic_positions(content, site, pad, read_litchi); },
      .notes = make_litchi_notes},
     {.info = {Format::csv, "csv", ".csv", "local frame"},
+     .is_local = true,
      .supports_curves = true,
      .write = [](const FlightPlan&
                      plan) { return write_trajectory_csv(compute_states(plan), Frame::enu); },
      .validate = validate_trajectory_csv,
      .read_positions = csv_positions},
     {.info = {Format::ned_csv, "ned-csv", ".ned.csv", "local frame, down"},
+     .is_local = true,
      .supports_curves = true,
      .write = [](const FlightPlan&
                      plan) { return write_trajectory_csv(compute_states(plan), Frame::ned); },
      .validate = validate_trajectory_csv,
      .read_positions = csv_positions},
     {.info = {Format::tum, "tum", ".tum", "local frame"},
+     .is_local = true,
      .supports_curves = true,
      .write = [](const FlightPlan& plan) { return write_tum(camera_poses(compute_states(plan))); },
      .validate = validate_tum,
      .read_positions = tum_positions},
 });
 
-/// Whether a number is that of a format. The compiler reports a format without a case.
+/// Whether a number is that of a format. The compiler rejects a format without a case.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic error "-Wswitch"
 constexpr bool is_format(Format format) {
   switch (format) {
     case Format::plan:
@@ -172,14 +178,21 @@ constexpr bool is_format(Format format) {
   }
   return false;
 }
+#pragma GCC diagnostic pop
 
 constexpr bool has_row_for_each_format() {
   for (std::size_t i = 0; i < records.size(); ++i) {
-    if (records[i].info.format != static_cast<Format>(i)) return false;
+    const FormatRecord& record = records[i];
+    if (record.info.format != static_cast<Format>(i)) return false;
+    if (record.write == nullptr || record.validate == nullptr || record.read_positions == nullptr) {
+      return false;
+    }
   }
   return !is_format(static_cast<Format>(records.size()));
 }
-static_assert(has_row_for_each_format(), "records: one row for each Format, in the same order");
+static_assert(
+    has_row_for_each_format(),
+    "records: one row for each Format, in the same order, with writer, checks and reader");
 
 const FormatRecord& find_record(Format format) {
   return records.at(static_cast<std::size_t>(format));
@@ -206,6 +219,8 @@ Format format_named(const std::string& name) {
   }
   throw Error(ErrorKind::bad_usage, "unknown format \"" + name + "\"; expected one of: " + names);
 }
+
+bool is_local(Format format) { return find_record(format).is_local; }
 
 bool supports_curves(Format format) { return find_record(format).supports_curves; }
 

@@ -32,6 +32,9 @@ Format format_named(const std::string& name);
 /// verified.
 bool supports_curves(Format format);
 
+/// Whether positions are in the local frame, so that files of this format need no georeference.
+bool is_local(Format format);
+
 /// Whether files of this format capture an image at each view.
 bool captures_images(Format format);
 

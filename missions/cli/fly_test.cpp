@@ -43,9 +43,10 @@ std::vector<std::filesystem::path> route_files(const std::filesystem::path& fold
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
-    for (const auto format : {flight::Format::plan, flight::Format::waypoints, flight::Format::kmz,
-                              flight::Format::litchi}) {
-      if (package::is_flight_file(name, format)) files.push_back(entry.path());
+    for (const flight::FormatInfo& info : flight::formats()) {
+      if (flight::captures_images(info.format) && package::is_flight_file(name, info.format)) {
+        files.push_back(entry.path());
+      }
     }
   }
   std::ranges::sort(files);

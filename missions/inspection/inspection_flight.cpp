@@ -181,15 +181,10 @@ std::span<const flight::Format> inspection_formats(flight::AutopilotType autopil
 }
 
 std::string unsupported_reason(flight::Format format) {
-  switch (format) {
-    case flight::Format::litchi:
-      return "commands neither an even rotation of the camera nor a recording";
-    case flight::Format::kml:
-    case flight::Format::geojson:
-      return "commands neither camera nor speed";
-    default:
-      return "";
+  if (format == flight::Format::litchi) {
+    return "commands neither an even rotation of the camera nor a recording";
   }
+  return flight::captures_images(format) ? "" : "commands neither camera nor speed";
 }
 
 void check_deviation(const InspectionFlight& flight, double allowed) {

@@ -66,7 +66,8 @@ flight::FlightOptions inspection_flight_options(const InspectionSpace& space);
 /// Returns the formats that can express an inspection for an autopilot.
 std::span<const flight::Format> inspection_formats(flight::AutopilotType autopilot);
 
-/// Returns why a format cannot command an inspection for any autopilot. Empty: it can.
+/// Returns why a format with geodetic positions cannot command an inspection for any autopilot.
+/// Empty: it can.
 std::string unsupported_reason(flight::Format format);
 
 }  // namespace skycap::missions::inspection

@@ -25,10 +25,6 @@ using flight::Format;
 using survey::inspection::FlightEvaluation;
 using survey::inspection::LimitUse;
 
-bool is_setpoint_format(Format format) {
-  return format == Format::csv || format == Format::ned_csv || format == Format::tum;
-}
-
 /// Returns the mission files among the formats.
 std::vector<Format> mission_formats(const InspectionPackage& package,
                                     std::span<const Format> formats) {
@@ -36,7 +32,7 @@ std::vector<Format> mission_formats(const InspectionPackage& package,
   const auto expressible = inspection_formats(vehicle.autopilot);
   std::vector<Format> result;
   for (const Format format : formats) {
-    if (is_setpoint_format(format)) continue;
+    if (flight::is_local(format)) continue;
     const std::string name = flight::format_info(format).name;
     if (const std::string reason = unsupported_reason(format); !reason.empty()) {
       throw Error(ErrorKind::bad_usage, "--format " + name + " " + reason);
@@ -123,7 +119,7 @@ InspectionExport export_inspection(const InspectionPackage& package,
   InspectionExport exported;
   const std::vector<Format> missions = mission_formats(package, formats);
   for (const Format format : formats) {
-    if (is_setpoint_format(format)) {
+    if (flight::is_local(format)) {
       exported.setpoints.push_back(stage_setpoints(package.flight, format, folder));
     }
   }

@@ -27,14 +27,9 @@ constexpr std::array mavlink_formats{Format::plan, Format::waypoints, Format::km
 constexpr std::array dji_formats{Format::kmz, Format::kml, Format::geojson, Format::csv};
 constexpr std::array litchi_formats{Format::litchi, Format::kml, Format::geojson, Format::csv};
 
-/// Returns true for formats in the local frame, which do not require a georeference.
-bool is_local(Format format) {
-  return format == Format::csv || format == Format::ned_csv || format == Format::tum;
-}
-
 /// Returns the requirement of a format that the mission does not meet; empty if it meets all.
 std::string what_is_missing_for(Format format, const flight::FlightOptions& options) {
-  if (is_local(format)) return "";
+  if (flight::is_local(format)) return "";
   if (!options.is_georeferenced) {
     return "requires a georeference; set site.latitude_deg and site.longitude_deg";
   }

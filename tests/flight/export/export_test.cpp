@@ -126,6 +126,16 @@ TEST_P(EveryFormat, InterpretsCapturesIfFormatCommandsCamera) {
       << "add the format to flight/interpreter/interpret.cpp";
 }
 
+// Tests run in the source folder.
+TEST_P(EveryFormat, IsListedInTheReference) {
+  const std::string page = read_content("docs/reference/route-formats.md");
+  if (page.empty()) GTEST_SKIP() << "not run in the source folder";
+  const FormatInfo& info = find_info(GetParam());
+  EXPECT_THAT(page, testing::AnyOf(HasSubstr("| `mission" + std::string(info.extension) + "`"),
+                                   HasSubstr("| `export --format " + std::string(info.name) + "`")))
+      << "add the format to the table in docs/reference/route-formats.md";
+}
+
 std::vector<Format> all_formats() {
   std::vector<Format> all;
   for (const FormatInfo& info : formats()) all.push_back(info.format);
