@@ -133,6 +133,12 @@ void RecordLog::cut(std::size_t size) {
   fail("cannot be truncated to its complete records: " + std::generic_category().message(errno));
 }
 
+void RecordLog::clear() {
+  cut(0);
+  found_ = {};
+  size_ = count_ = 0;
+}
+
 void RecordLog::append(std::string_view text) {
   assert(text.find('\n') == std::string_view::npos);
   const std::string line = format_line({count_ + 1, text});

@@ -49,6 +49,9 @@ class RecordLog {
   /// Error{bad_file}, the file is unchanged.
   void append(std::string_view text);
 
+  /// Removes all records. Throws Error{bad_file} if that fails.
+  void clear();
+
  private:
   void cut(std::size_t size);
   [[noreturn]] void fail(const std::string& what) const;

@@ -32,8 +32,8 @@ void require_flyable(const flight::FlightOptions& flight) {
   }
   if (flight.capture.is_moving) {
     reject(
-        "sensor.capture: moving conflicts with skycap fly, which scans at views only; remove it "
-        "(skycap serve accepts en-route scans)");
+        "sensor.capture: moving conflicts with skycap fly, which scans at views only; set "
+        "sensor.capture: stops (skycap serve accepts en-route scans)");
   }
   if (flight.required_vehicle().autopilot != flight::AutopilotType::ardupilot) {
     reject(

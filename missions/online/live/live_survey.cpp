@@ -63,6 +63,8 @@ struct LiveSurvey::Impl {
         log(folder / journal_name) {
     const std::string text = support::identity_text(
         identity, {{"format", support::journal_format}, {"surface", "live"}});
+    // Without a scan there is nothing to resume, and the mission may have been corrected.
+    if (log.records().size() == 1 && log.records().front() != text) log.clear();
     if (log.records().empty()) {
       log.append(text);
     } else {

@@ -42,6 +42,16 @@ TEST_F(RecordLogFile, ReturnsAppendedRecords) {
   EXPECT_THAT(read_records(file_).records, ElementsAre("one", "", "three {\"3\": 0.1}", "four"));
 }
 
+TEST_F(RecordLogFile, NumbersRecordsFromOneAfterClear) {
+  {
+    RecordLog log(file_);
+    log.clear();
+    EXPECT_THAT(log.records(), IsEmpty());
+    log.append("first");
+  }
+  EXPECT_THAT(read_records(file_).records, ElementsAre("first"));
+}
+
 /// The checksum of the first record was computed with Python's zlib.crc32(b"1 one").
 TEST_F(RecordLogFile, UsesZlibCrc32) { EXPECT_THAT(bytes(), HasSubstr("7f7c96f6 1 one\n")); }
 

@@ -285,6 +285,19 @@ TEST(LiveSurvey, AcceptsPosesUncheckedWhenConfigured) {
   EXPECT_FALSE(survey.proposal().pose);
 }
 
+TEST(LiveSurvey, AcceptsChangedMissionBeforeFirstScan) {
+  const tests::TestFolder folder;
+  const Rehearsal rehearsal(tests::quick_mission()), other(tests::quick_mission("seed: 2\n"));
+  rehearsal.open(folder.path());
+  {
+    LiveSurvey survey = other.open(folder.path());
+    other.add_one(survey);
+  }
+  EXPECT_EQ(other.open(folder.path()).views().size(), 1U);
+  EXPECT_THAT(thrown_message([&] { rehearsal.open(folder.path()); }),
+              HasSubstr("seed changed from 2 to 1"));
+}
+
 TEST(LiveSurvey, RejectsLockedChangedOrDamagedFolder) {
   const tests::TestFolder folder;
   const Rehearsal rehearsal(tests::quick_mission()), other(tests::quick_mission("seed: 2\n"));
