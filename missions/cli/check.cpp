@@ -203,7 +203,7 @@ std::string expectation_text(const simulation::Expectation& expected) {
                                 : fmt::format("{} to {}", expected.min_views, expected.max_views);
   return fmt::format(
       "  expected  {} views (oracle: {}), {} minutes of flight, {} MB\n  time      {} s for skycap "
-      "plan on this machine, estimated from the loading time and the first view\n",
+      "plan on this machine, estimated from the first views\n",
       views, expected.known_views, range_text(expected.min_minutes, expected.max_minutes),
       rough_text(1e-6 * expected.memory), range_text(expected.min_time, expected.max_time));
 }

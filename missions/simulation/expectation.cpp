@@ -1,21 +1,17 @@
 #include "missions/simulation/expectation.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <variant>
 #include <vector>
 
 #include "flight/motion/motion.h"
 #include "geometry/surfaces/mesh.h"
-#include "missions/evaluation/coverage.h"
-#include "missions/evaluation/downsampled_cloud.h"
 #include "missions/session/initial_pattern_flight.h"
 #include "missions/simulation/omniscient.h"
-#include "sim/sensors/survey_sensor.h"
+#include "missions/simulation/planning_time.h"
 #include "survey/planners/planner_names.h"
 #include "survey/planners/planner_options.h"
 
@@ -50,7 +46,7 @@ Share find_view_ratio(survey::PlannerName planner) {
   }
 }
 
-double path_from_json(const std::vector<View>& views) {
+double path_length(const std::vector<View>& views) {
   double distance = 0.0;
   for (std::size_t i = 1; i < views.size(); ++i) {
     distance += (views[i].position - views[i - 1].position).norm();
@@ -72,7 +68,7 @@ double estimate_transfer(const session::SurveyOptions& options, const std::vecto
                       motion.leg_time(known.front().position - home) +
                       motion.leg_time(home - known.back().position);
   const std::vector<View> pattern = session::initial_pattern_views(options.start, seed);
-  return time + path_from_json(pattern) / flight.cruise_speed;
+  return time + path_length(pattern) / flight.cruise_speed;
 }
 
 /// Returns the flight time for a number of views [min]. The path length grows with the square root
@@ -80,7 +76,7 @@ double estimate_transfer(const session::SurveyOptions& options, const std::vecto
 double estimate_minutes(const session::SurveyOptions& options, const std::vector<View>& known,
                         double views, std::uint64_t seed) {
   const double more = std::sqrt(views / static_cast<double>(known.size()));
-  const double distance = path_from_json(known) * more;
+  const double distance = path_length(known) * more;
   const flight::FlightOptions& flight = options.flight;
   if (!flight.has_vehicle()) {
     return (distance / options.limits.speed + views * options.limits.time_per_view) /
@@ -88,55 +84,37 @@ double estimate_minutes(const session::SurveyOptions& options, const std::vector
   }
   const flight::Motion motion(flight.required_vehicle(),
                               flight.route(Eigen::Vector3d::Zero()).conditions);
+  if (views <= 0.0) return estimate_transfer(options, known, motion, seed) / seconds_per_minute;
   const double stop = flight.rest_before() + flight.rest_after();
   const double leg = motion.leg_time({distance / views, 0.0, 0.0});
   return (estimate_transfer(options, known, motion, seed) + views * (leg + stop)) /
          seconds_per_minute;
 }
 
+double count_pixels(const survey::PlannerOptions& planner) {
+  return static_cast<double>(planner.camera.width) * planner.camera.height;
+}
+
+/// Returns the predicted number of stored points.
+double count_points(const survey::PlannerOptions& planner, const evaluation::SurveyScene& scene,
+                    double views) {
+  const double area = geometry::surface_area(scene.model());
+  return std::min(packing * area / (planner.spacing * planner.spacing),
+                  views * count_pixels(planner));
+}
+
 double estimate_memory(const survey::PlannerOptions& planner, const evaluation::SurveyScene& scene,
                        double views) {
-  const auto pixels = static_cast<double>(planner.camera.width) * planner.camera.height;
-  const double spacing = planner.spacing;
-  const double area = geometry::surface_area(scene.model());
-  const double points = std::min(packing * area / (spacing * spacing), views * pixels);
   return base_bytes + a_triangle * static_cast<double>(scene.model().triangles.size()) +
-         a_pixel * pixels + a_point * points;
+         a_pixel * count_pixels(planner) + a_point * count_points(planner, scene, views);
 }
 
-/// Seconds of parts of a survey's first view.
-struct ViewTimes {
-  double measured = 0.0;   ///< the scan
-  double planned = 0.0;    ///< the next view
-  double evaluated = 0.0;  ///< which surface the scan covers
-};
-
-double seconds_since(std::chrono::steady_clock::time_point begun) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-}
-
-ViewTimes times_of_a_view(const evaluation::SimulationOptions& options,
-                          const evaluation::SurveyScene& scene, const session::RunOptions& run) {
-  const auto planner = survey::make_planner(
-      options.survey.planner, {.seed = run.seed,
-                               .threads = run.threads,
-                               .sphere = scene.view_sphere(),
-                               .true_scene_admits = scene.admissible().allows,
-                               .pattern_target = scene.pattern_target(options.survey.planner)});
-  const sim::SurveySensor sensor(options.sensor, run.seed);
-  ViewTimes times;
-  const auto begun = std::chrono::steady_clock::now();
-  const geometry::Scan scan =
-      sensor.scan(scene.scene(), scene.first_view(run.seed), 0, run.threads);
-  times.measured = seconds_since(begun);
-  planner->next_view(scan);
-  times.planned = seconds_since(begun) - times.measured;
-  evaluation::CoverageMeter meter(scene.samples().points, options.evaluation.registration_distance);
-  evaluation::DownsampledCloud cloud(options.survey.planner.spacing);
-  const auto kept = std::chrono::steady_clock::now();
-  meter.add(cloud.store(scan.points, options.scene_box()));
-  times.evaluated = seconds_since(kept);
-  return times;
+SurveyWork survey_work(const session::SurveyOptions& options, const evaluation::SurveyScene& scene,
+                       double views, double minutes) {
+  const flight::CaptureOptions& capture = options.flight.capture;
+  const double en_route =
+      capture.is_moving ? seconds_per_minute * minutes / capture.frame_period : 0.0;
+  return {.scans = views + en_route, .points = count_points(options.planner, scene, views)};
 }
 
 /// Returns the number of views of fixed sets and patterns, or nullopt for planners.
@@ -165,28 +143,37 @@ Expectation expectation(const evaluation::SimulationOptions& options,
   const bool has_view_limit = survey::find_title(asked.planner.name).metric.has_value() || fixed ||
                               survey::is_pb_nbv(asked.planner.name);
   const Share share = find_view_ratio(asked.planner.name);
-  const double min = has_view_limit ? limit : std::min(limit, std::round(share.min * count));
-  const double max = has_view_limit ? limit : std::min(limit, std::round(share.max * count));
+  double min = has_view_limit ? limit : std::min(limit, std::round(share.min * count));
+  double max = has_view_limit ? limit : std::min(limit, std::round(share.max * count));
+  // A scanner in flight measures nearly all during the initial pattern.
+  double pattern = 0.0;
+  if (asked.flight.capture.scans_in_flight() && !has_view_limit) {
+    pattern = static_cast<double>(session::initial_pattern_views(asked.start, run.seed).size());
+    min = 0.0;
+    max = std::min(limit, std::round(0.5 * count));
+  }
   const double minutes =
       asked.limits.max_time.value_or(std::numeric_limits<double>::max()) / seconds_per_minute;
-  const ViewTimes times = times_of_a_view(options, scene, run);
-  const double view = times.measured + times.planned + times.evaluated;
-  // The written files are flown again; if they capture different views, several times.
-  const double again = times.measured + 2.0 * times.evaluated;
-  // Route, return and files of a small survey [s].
-  constexpr double min_results = 0.3, max_results = 1.5;
-  // The attainable coverage takes scans that nothing is planned from, fewer if they cover it all.
-  constexpr double fewest = 0.5;
-  const double attainable =
-      (times.measured + times.evaluated) * static_cast<double>(options.evaluation.attainable_views);
+  const double min_minutes = std::min(minutes, estimate_minutes(asked, known, min, run.seed));
+  const double max_minutes = std::min(minutes, estimate_minutes(asked, known, max, run.seed));
+  const PlanningPace pace = measure_pace(options, scene, run);
+  const bool has_vehicle = asked.flight.has_vehicle();
+  // The first views of a survey need more time than the others: they find most of the surface.
+  constexpr double shortest = 0.6, longest = 1.1;
+  const double least =
+      shortest * planning_time(pace, survey_work(asked, scene, pattern + min, min_minutes),
+                               pace.attainable, has_vehicle);
+  const double most =
+      longest * planning_time(pace, survey_work(asked, scene, pattern + max, max_minutes),
+                              std::min(2.0 * pace.attainable, pace.max_attainable), has_vehicle);
   return {.known_views = known.size(),
-          .min_views = static_cast<std::size_t>(min),
-          .max_views = static_cast<std::size_t>(max),
-          .min_minutes = std::min(minutes, estimate_minutes(asked, known, min, run.seed)),
-          .max_minutes = std::min(minutes, estimate_minutes(asked, known, max, run.seed)),
-          .memory = estimate_memory(asked.planner, scene, max),
-          .min_time = min_results + (view + again) * min + fewest * attainable,
-          .max_time = max_results + (view + 2.0 * again) * max + attainable};
+          .min_views = static_cast<std::size_t>(pattern + min),
+          .max_views = static_cast<std::size_t>(pattern + max),
+          .min_minutes = min_minutes,
+          .max_minutes = max_minutes,
+          .memory = estimate_memory(asked.planner, scene, pattern + max),
+          .min_time = least,
+          .max_time = most};
 }
 
 }  // namespace skycap::missions::simulation

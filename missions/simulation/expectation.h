@@ -20,15 +20,15 @@ struct Expectation {
   double min_minutes = 0.0;  ///< Min flight time from speeds, paths and stops [min].
   double max_minutes = 0.0;
   double memory = 0.0;  ///< of the whole program [byte], by triangles, pixels and points
-  /// Of this machine [s]: the views, by the time of the first one, and the attainable coverage. The
-  /// latter is kept and takes no time when the same scene is planned again.
+  /// Time of a plan on this machine without loading the scene [s], see planning_time.h. The visible
+  /// surface and the attainable coverage are cached: another plan of the scene needs less time.
   double min_time = 0.0;
   double max_time = 0.0;
 };
 
 /// Predicts the cost of a feasible mission. Takes a few seconds: it evaluates surface samples from
-/// some hundred views, and measures and plans one view of the survey. Throws all errors of planner
-/// and sensor.
+/// some hundred views, and runs the begin of the survey. Throws all errors of planner, sensor and
+/// session::SurveyFlight.
 Expectation expectation(const evaluation::SimulationOptions& options,
                         const evaluation::SurveyScene& scene, const session::RunOptions& run);
 

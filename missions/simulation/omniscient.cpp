@@ -32,12 +32,6 @@ struct Observation {
   float hazard;
 };
 
-survey::surfel::Noise true_noise(const sim::NoiseConfig& noise) {
-  return noise.direction == sim::NoiseDirection::isotropic
-             ? survey::surfel::Noise{.isotropic = noise.sigma, .along_ray = 0.0}
-             : survey::surfel::Noise{.isotropic = 0.0, .along_ray = noise.sigma};
-}
-
 /// Evaluation of views with the ground-truth surface.
 class Truth {
  public:
@@ -195,6 +189,12 @@ std::vector<View> greedy_cover(const evaluation::SimulationOptions& options,
 }
 
 }  // namespace
+
+survey::surfel::Noise true_noise(const sim::NoiseConfig& noise) {
+  return noise.direction == sim::NoiseDirection::isotropic
+             ? survey::surfel::Noise{.isotropic = noise.sigma, .along_ray = 0.0}
+             : survey::surfel::Noise{.isotropic = 0.0, .along_ray = noise.sigma};
+}
 
 std::vector<View> known_cover(const evaluation::SimulationOptions& options,
                               const evaluation::SurveyScene& scene, std::uint64_t seed,

@@ -12,8 +12,13 @@
 #include "missions/evaluation/simulation_options.h"
 #include "missions/evaluation/survey_scene.h"
 #include "missions/session/survey_record.h"
+#include "sim/sensors/depth_camera.h"
+#include "survey/surfel/coverage_model.h"
 
 namespace skycap::missions::simulation {
+
+/// Returns the noise of a simulated camera as described by the coverage model.
+survey::surfel::Noise true_noise(const sim::NoiseConfig& noise);
 
 struct OmniscientConfig {
   std::size_t candidates = 1500;  ///< Number of candidate views, each aimed at a visible position.
