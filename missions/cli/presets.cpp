@@ -100,6 +100,9 @@ Json all_presets() {
     const config::SensorDescription found = config::find_sensor(std::string(name));
     Json sensor{{"name", name}, {"title", found.name}};
     sensor.update(std::visit([](const auto& config) { return to_json(config); }, found.sensor));
+    if (found.useful_range) {
+      sensor["useful_range_m"] = {found.useful_range->min, found.useful_range->max};
+    }
     sensors.push_back(std::move(sensor));
   }
   return {{"vehicles", vehicles}, {"sensors", sensors}, {"photo_cameras", photo_cameras}};
@@ -115,7 +118,17 @@ std::string vehicle_line(const Json& vehicle) {
       vehicle["battery_wh"].get<double>(), vehicle["endurance_min"].get<double>());
 }
 
+/// Returns a range of depths. Cameras without a limit have the maximum range of CameraConfig.
+std::string depth_range_text(double min, double max) {
+  if (max >= geometry::CameraConfig{}.max_range) return "no limit";
+  return fmt::format("{:.3g} to {:.4g} m", min, max);
+}
+
 std::string sensor_line(const Json& sensor) {
+  const std::string useful = sensor.contains("useful_range_m")
+                                 ? depth_range_text(sensor["useful_range_m"][0].get<double>(),
+                                                    sensor["useful_range_m"][1].get<double>())
+                                 : "";
   const std::string resolution =
       sensor.contains("width_px")
           ? fmt::format("{} x {} px, {:.3g} x {:.3g} degrees", sensor["width_px"].get<int>(),
@@ -123,10 +136,11 @@ std::string sensor_line(const Json& sensor) {
                         sensor["vertical_fov_deg"].get<double>())
           : fmt::format("{} channels, {:.4g} pulses/s", sensor["channels"].get<std::size_t>(),
                         sensor["pulses_per_s"].get<double>());
-  return fmt::format("  {:<20} {:<14} {:>5.3g} to {:<5.4g} m  {}\n",
-                     sensor["name"].get<std::string>(), sensor["kind"].get<std::string>(),
-                     sensor["min_range_m"].get<double>(), sensor["max_range_m"].get<double>(),
-                     resolution);
+  return fmt::format(
+      "  {:<20} {:<14} {:<13}  {:<10}  {}\n", sensor["name"].get<std::string>(),
+      sensor["kind"].get<std::string>(),
+      depth_range_text(sensor["min_range_m"].get<double>(), sensor["max_range_m"].get<double>()),
+      useful, resolution);
 }
 
 std::string photo_camera_line(const Json& camera) {
@@ -152,14 +166,15 @@ int presets(const PresetsOptions& options, const Console& console) {
       "{:>9}  {:>9}  {:>8}\n",
       "name", "autopilot", "mass", "radius", "max speed", "max wind", "battery", "endurance");
   for (const Json& vehicle : all["vehicles"]) text += vehicle_line(vehicle);
-  text +=
-      fmt::format("Sensors (scan.sensor; LiDARs also sensor.lidar)\n  {:<20} {:<14} {:<16}  {}\n",
-                  "name", "kind", "range", "resolution");
+  text += fmt::format(
+      "Sensors (scan.sensor; LiDARs also sensor.lidar)\n  {:<20} {:<14} {:<13}  {:<10}  {}\n",
+      "name", "kind", "range", "useful", "resolution");
   for (const Json& sensor : all["sensors"]) text += sensor_line(sensor);
   text += fmt::format(
       "Photo cameras (sensor.photo_camera)\n  {:<20} {:>15}  {:>15}  {:>8}  {:>8}  {:>7}  {}\n",
       "name", "sensor", "image", "focal", "at 10 m", "interval", "shutter");
   for (const Json& camera : all["photo_cameras"]) text += photo_camera_line(camera);
+  text += "\"useful\": depths at which the camera is accurate, as stated by the manufacturer\n";
   text += "\"at 10 m\" is the ground sampling distance at a distance of 10 m\n";
   console.out << text << std::flush;
   return 0;
