@@ -165,7 +165,7 @@ Expectation expectation(const evaluation::SimulationOptions& options,
                                pace.attainable, has_vehicle);
   const double most =
       longest * planning_time(pace, survey_work(asked, scene, pattern + max, max_minutes),
-                              std::min(2.0 * pace.attainable, pace.max_attainable), has_vehicle);
+                              pace.max_attainable, has_vehicle);
   return {.known_views = known.size(),
           .min_views = static_cast<std::size_t>(pattern + min),
           .max_views = static_cast<std::size_t>(pattern + max),

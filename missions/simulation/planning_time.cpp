@@ -149,18 +149,23 @@ class PredictedScan {
   std::vector<float> uncovered_;  ///< probability of each sample
 };
 
-/// Returns the predicted number of scans of attainable_samples() with all samples of the scene, of
-/// which `samples` are a part.
-double count_attainable_scans(const evaluation::SimulationOptions& options,
-                              const evaluation::SurveyScene& scene,
-                              const geometry::SurfaceSamples& samples,
-                              std::span<const std::uint8_t> is_visible,
-                              const session::RunOptions& run) {
+/// Scans of attainable_samples() for a part of the samples of the scene.
+struct AttainableScans {
+  std::size_t all = 0;
+  std::size_t useless = 0;  ///< that cover no sample, not even the one they are aimed at
+};
+
+AttainableScans count_attainable_scans(const evaluation::SimulationOptions& options,
+                                       const evaluation::SurveyScene& scene,
+                                       const geometry::SurfaceSamples& samples,
+                                       std::span<const std::uint8_t> is_visible,
+                                       const session::RunOptions& run) {
   PredictedScan predicted(options, scene, samples);
-  std::size_t useful = 0, useless = 0;
+  AttainableScans scans;
   const auto scan = [&](const geometry::View& view, std::uint64_t, geometry::Scan) {
     geometry::Scan covered = predicted.add(view);
-    ++(covered.points.empty() ? useless : useful);
+    ++scans.all;
+    if (covered.points.empty()) ++scans.useless;
     return covered;
   };
   const evaluation::AttainableConfig config{
@@ -171,11 +176,7 @@ double count_attainable_scans(const evaluation::SimulationOptions& options,
       .seed = run.seed};
   evaluation::attainable_samples(samples.points, is_visible, scene.scene(), scan,
                                  scene.admissible(), config);
-  // Each sample that its own scan does not cover takes a scan.
-  const double more = static_cast<double>(scene.samples().points.size()) /
-                      static_cast<double>(samples.points.size());
-  return std::min(static_cast<double>(options.evaluation.attainable_views),
-                  static_cast<double>(useful) + more * static_cast<double>(useless));
+  return scans;
 }
 
 }  // namespace
@@ -192,12 +193,14 @@ PlanningPace measure_pace(const evaluation::SimulationOptions& options,
       evaluation::visible_samples(samples.points, scene.scene(), scene.admissible(), run.threads);
   pace.visible = seconds_since(begun) * static_cast<double>(scene.samples().points.size()) /
                  static_cast<double>(samples.points.size());
+  const AttainableScans scans = count_attainable_scans(options, scene, samples, is_visible, run);
+  // All samples of the scene need more scans than a part of them. If some cannot be covered, up to
+  // all permitted scans are taken in vain.
   const auto limit = static_cast<double>(options.evaluation.attainable_views);
-  if (limit > 0.0) {
-    pace.attainable =
-        pace.measurement * count_attainable_scans(options, scene, samples, is_visible, run);
-    pace.max_attainable = pace.measurement * limit;
-  }
+  const auto counted = static_cast<double>(scans.all);
+  pace.attainable = pace.measurement * counted;
+  pace.max_attainable =
+      pace.measurement * (scans.useless > 0 ? limit : std::min(limit, 2.0 * counted));
   return pace;
 }
 

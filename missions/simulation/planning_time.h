@@ -19,8 +19,8 @@ struct PlanningPace {
   double scan = 0.0;            ///< a further scan of the survey, with planning and evaluation
   double measurement = 0.0;     ///< simulation of a scan and evaluation of its coverage
   double visible = 0.0;         ///< the visible surface
-  double attainable = 0.0;      ///< the attainable coverage, if its views cover the visible surface
-  double max_attainable = 0.0;  ///< the same with the views of `evaluation.attainable_views`
+  double attainable = 0.0;      ///< the attainable coverage: minimum
+  double max_attainable = 0.0;  ///< the attainable coverage: maximum
 };
 
 /// Runs the begin of the survey for a few seconds, and counts the views for the attainable coverage
