@@ -5,6 +5,7 @@
 
 #include "missions/config/resolve.h"
 #include "missions/simulation/expectation.h"
+#include "missions/simulation/planning_time.h"
 #include "missions/simulation/survey_runner.h"
 #include "tests/missions/run_skycap.h"
 #include "tests/missions/simulated_mission.h"
@@ -120,14 +121,6 @@ TEST(Expectation, PredictsViewsWithinFactorOfTwo) {
   EXPECT_GT(expected.max_time, 0.0);
   EXPECT_GT(expected.memory, 1e7);
 
-  // With so many views for the attainable coverage, its computation takes longer than the survey on
-  // any machine.
-  const config::MissionSetup long_one = config::parse_mission(
-      quick_mission(), "m.yaml",
-      overrides({{"planner.name", "skycap"}, {"evaluation.attainable_views", "10000"}}));
-  EXPECT_GT(simulation::expectation(long_one.simulation, scene, {.threads = 2}).max_time,
-            3.0 * expected.max_time);
-
   const config::MissionSetup limited =
       config::parse_mission(quick_mission(), "m.yaml",
                             overrides({{"limits.max_views", "3"}, {"limits.max_minutes", "1"}}));
@@ -135,6 +128,37 @@ TEST(Expectation, PredictsViewsWithinFactorOfTwo) {
       simulation::expectation(limited.simulation, scene, {.threads = 2});
   EXPECT_EQ(at_most.max_views, 3U);
   EXPECT_LE(at_most.max_minutes, 1.0);
+}
+
+// The time of a plan is the sum of its parts. Only a vehicle's mission is flown again.
+TEST(PlanningTime, AddsTimeOfEachPart) {
+  const simulation::PlanningPace pace{
+      .start = 2.0, .scan = 0.5, .measurement = 0.25, .visible = 4.0};
+  const auto time = [&](double scans, double attainable, bool has_vehicle) {
+    return simulation::planning_time(pace, {.scans = scans, .points = 0.0}, attainable,
+                                     has_vehicle);
+  };
+  const double first = time(1.0, 0.0, false);
+  EXPECT_GE(first, 6.0);
+  EXPECT_DOUBLE_EQ(time(11.0, 0.0, false) - first, 10.0 * 0.5);
+  EXPECT_DOUBLE_EQ(time(11.0, 3.0, false) - first, 10.0 * 0.5 + 3.0);
+  EXPECT_DOUBLE_EQ(time(11.0, 0.0, true) - first, 10.0 * 0.5 + 11.0 * 0.25);
+}
+
+// The attainable coverage takes no scans if the mission permits none.
+TEST(PlanningTime, MeasuresPartsOfTheMission) {
+  const config::MissionSetup mission =
+      config::parse_mission(quick_mission(), "m.yaml", {{"--planner", "planner.name", "skycap"}});
+  const evaluation::SurveyScene scene(mission.simulation, "", 0);
+  const simulation::PlanningPace pace =
+      simulation::measure_pace(mission.simulation, scene, {.threads = 2});
+  EXPECT_GT(pace.start, 0.0);
+  EXPECT_GT(pace.scan, 0.0);
+  EXPECT_GT(pace.visible, 0.0);
+  EXPECT_LE(pace.attainable, pace.max_attainable);
+  evaluation::SimulationOptions without = mission.simulation;
+  without.evaluation.attainable_views = 0;
+  EXPECT_EQ(simulation::measure_pace(without, scene, {.threads = 2}).max_attainable, 0.0);
 }
 
 TEST(Expectation, EqualsViewLimitOfVolumetricPlanner) {
