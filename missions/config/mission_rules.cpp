@@ -275,8 +275,8 @@ void check_flight(const MissionDocument& document) {
   }
   if (const double max = vehicle.max_speed; flight.cruise_speed > max) {
     document.reject("flight.cruise_speed", "must be at most " + short_text(max) +
-                                               " m/s, the maximum speed of " +
-                                               flight.vehicle_name + "; lower it");
+                                               " m/s, the maximum speed of " + flight.vehicle_name +
+                                               "; lower it");
   }
   if (const double max = flight.required_vehicle().max_wind; flight.wind_speed >= max) {
     document.reject("flight.wind_speed", "must be less than the maximum wind of " +
