@@ -66,8 +66,11 @@ std::optional<HttpAnswer> RequestGuard::reject(const HttpRequest& request) const
   if (!realm) return rejection(403, "wrong token; open the address that skycap studio has printed");
   if (is_read) return std::nullopt;
   if (*realm != Realm::page || !is_from_page) return rejection(403, "POST requires the page");
-  if (request.content_type != "application/json" || request.is_encoded) {
-    return rejection(415, "content must be application/json without compression");
+  const bool is_piece = request.path.starts_with("/" + page_token_ + "/api/uploads/") &&
+                        request.query.contains("offset");
+  const char* const type = is_piece ? "application/octet-stream" : "application/json";
+  if (request.content_type != type || request.is_encoded) {
+    return rejection(415, std::string("content must be ") + type + " without compression");
   }
   return std::nullopt;
 }

@@ -60,6 +60,22 @@ async function run_command(command, options, on_change, draft) {
   return follow_job(view, on_change);
 }
 
+/// Runs a command that is not shown in the step Run, such as a check while typing.
+async function run_quietly(command, options, draft) {
+  const job = await request("jobs", { command, options, draft });
+  const lines = [];
+  return new Promise((resolve) => {
+    const events = new EventSource("api/jobs/" + job.id + "/events");
+    events.onmessage = (event) => {
+      const state = JSON.parse(event.data);
+      (state.lines || []).forEach((line, i) => { lines[state.from + i] = line; });
+      if (state.running) return;
+      events.close();
+      resolve({ ...state, lines });
+    };
+  });
+}
+
 /// Output of a command with its state and a button to cancel it, for the page of a step.
 function make_output(label) {
   const command = element("code", { class: "command" });
