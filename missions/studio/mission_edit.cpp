@@ -80,6 +80,17 @@ YamlEntry* find_entry(YamlNode& node, const std::string& key) {
   return found == node.entries.end() ? nullptr : &*found;
 }
 
+/// Returns whether a key is the only one in its map.
+bool is_only_entry(const YamlNode& root, const std::vector<std::string>& path) {
+  const YamlNode* node = &root;
+  for (std::size_t depth = 0; depth + 1 < path.size(); ++depth) {
+    const auto found = std::ranges::find(node->entries, path[depth], &YamlEntry::key);
+    if (found == node->entries.end()) return false;
+    node = &found->value;
+  }
+  return node->entries.size() == 1 && node->entries[0].key == path.back();
+}
+
 /// Sets a value in the tree. nullopt removes the key.
 void set_value(YamlNode& node, const std::vector<std::string>& path, std::size_t depth,
                const std::optional<YamlNode>& value) {
@@ -343,8 +354,10 @@ std::map<std::string, std::string> list_values(const std::string& text, const st
 }
 
 std::string with_key(const std::string& text, const std::string& key, const std::string& value) {
-  const std::vector<std::string> path = split_path(key);
+  std::vector<std::string> path = split_path(key);
   YamlNode root = support::parse_yaml(text, "mission");
+  // A map that would be empty is removed, except the sections at the top.
+  while (value.empty() && path.size() > 2 && is_only_entry(root, path)) path.pop_back();
   YamlNode expected = root;
   set_value(expected, path, 0,
             value.empty() ? std::nullopt : std::optional(parse_value(key, value)));

@@ -70,7 +70,7 @@ class Editor {
     if (views.length) this.group.add(this.drawn_views(views));
     if (this.handles.length) this.group.add(this.drawn_handles());
     this.tags.forEach((tag) => this.panel.remove_tag(tag));
-    this.tags = names.map(([place, text]) => this.panel.add_tag(vector(place), text, true));
+    this.tags = names.map(([place, text]) => this.panel.add_tag(vector(place), text, true, true));
     this.viewer.draw_soon();
   }
 

@@ -299,10 +299,11 @@ class Panel {
     this.viewer.mark(marks);
   }
 
-  add_tag(place, text, is_ruler) {
+  /// Adds a text at a place. `is_ruler`: shown without the ground; `is_above`: beside the place.
+  add_tag(place, text, is_ruler, is_above) {
     const label = element("div", { class: is_ruler ? "tag" : "tag north" }, text);
     this.stage.append(label);
-    const tag = { place, label, is_ruler };
+    const tag = { place, label, is_ruler, is_above };
     this.tags.push(tag);
     this.place_tags();
     return tag;
@@ -319,11 +320,11 @@ class Panel {
   }
 
   place_tags() {
-    for (const { place, label, is_ruler } of this.tags) {
+    for (const { place, label, is_ruler, is_above } of this.tags) {
       const seen = this.viewer.on_screen(place);
       const is_shown = seen.is_seen && (is_ruler || this.viewer.layers.ground.visible);
       label.style.display = is_shown ? "" : "none";
-      label.style.transform = `translate(${seen.x}px, ${seen.y}px) translate(-50%, -50%)`;
+      label.style.transform = `translate(${seen.x}px, ${seen.y}px) translate(-50%, ${is_above ? -140 : -50}%)`;
     }
   }
 

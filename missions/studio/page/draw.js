@@ -44,7 +44,7 @@ const drawn_keys = ["flight.takeoff", "flight.rally", "site.geofence", "site.no_
 function make_draw(mission) {
   const draw = { shapes: {}, ground: 0, pad: null, tool: null, places: [], views: [] };
   const hint = element("span", { role: "status" });
-  const finish = button("Finish", () => draw.finish());
+  const finish = button("Finish", () => mission.in_turn(() => draw.finish()));
   const cancel = button("Stop drawing", () => draw.use(null));
   const list = element("div");
   draw.growth = element("p", { id: "growth" });
@@ -53,13 +53,13 @@ function make_draw(mission) {
       Object.assign(draw, { ground, pad });
       draw.refresh();
     },
-    async placed(place) {
+    placed: (place) => mission.in_turn(async () => {
       if (!draw.tool) return;
       draw.places.push(place);
       if (draw.places.length >= draw.tool.clicks) await draw.finish();
       else draw.show();
-    },
-    moved: (id, points, is_over) => draw.move(id, points, is_over),
+    }),
+    moved: (id, points, is_over) => (is_over ? mission.in_turn(() => draw.move(id, points)) : draw.follow(id, points)),
     selected(id) {
       const row = [...list.children].find((one) => one.dataset.id === id);
       if (row) row.querySelector("input").focus();
@@ -136,13 +136,13 @@ function make_draw(mission) {
       draw.stage.node.dataset.views = views.length;
       draw.show();
     },
+    /// Shows the numbers of an object that is being dragged.
+    follow(id, points) {
+      const row = [...list.children].find((one) => one.dataset.id === id);
+      if (row) fill_row(row, { points });
+    },
     /// Applies a drag, or new numbers.
-    async move(id, points, is_over) {
-      if (!is_over) {  // the numbers follow the mouse
-        const row = [...list.children].find((one) => one.dataset.id === id);
-        if (row) fill_row(row, { points });
-        return;
-      }
+    async move(id, points) {
       const index = Number(id.split(".").pop()), { shapes } = draw;
       if (id === "flight.takeoff") await draw.change([[id, points[0]]]);
       if (id.startsWith("flight.rally.")) await draw.change([["flight.rally", shapes["flight.rally"].with(index, points[0])]]);
@@ -168,6 +168,7 @@ function make_draw(mission) {
 
   function fill_row(row, { points, bottom, top }) {
     for (const input of row.querySelectorAll("input")) {
+      if (input === document.activeElement) continue;  // a number that is being entered
       const { part, axis, end } = input.dataset;
       if (part !== undefined) input.value = points[part][axis];
       else if (bottom !== undefined || top !== undefined) input.value = (end === "floor" ? bottom : top) ?? "";
@@ -179,24 +180,24 @@ function make_draw(mission) {
     const points_now = () => draw.objects().find((one) => one.id === object.id).points;
     const axes = object.shape === "prism" ? ["x", "y"] : ["x", "y", "z"];
     const part_name = (part) => (object.shape === "box" ? ["min ", "max "][part] : object.points.length > 1 ? "corner " + (part + 1) + " " : "");
-    const rows = object.points.map((point, part) => element("div", { class: "numbers" }, axes.map((axis, i) =>
-      number_input(object.name + " " + part_name(part) + axis, point[i], (value) => {
+    const rows = object.points.map((point, part) => element("div", { class: "numbers" }, axes.flatMap((axis, i) => [axis,
+      number_input(object.name + " " + part_name(part) + axis, point[i], (value) => mission.in_turn(() => {
         if (value === null) throw new Error(object.name + " " + axis + " requires a number");
         const moved = points_now().map((one, k) => (k === part ? one.with(i, value) : one));
-        return draw.move(object.id, moved, true);
-      }, { "data-part": part, "data-axis": i })),
+        return draw.move(object.id, moved);
+      }), { "data-part": part, "data-axis": i })]),
     object.shape === "prism" && object.points.length > 3 ? button("Remove corner " + (part + 1), () =>
-      draw.move(object.id, points_now().toSpliced(part, 1), true)) : null));
+      mission.in_turn(() => draw.move(object.id, points_now().toSpliced(part, 1)))) : null));
     if (object.role === "no_fly") {
       const index = Number(object.id.split(".").pop());
-      const set = (end, value) => draw.change([["site.no_fly", draw.shapes["site.no_fly"].with(index,
-        { ...draw.shapes["site.no_fly"][index], [end]: value })]]);
+      const set = (end, value) => mission.in_turn(() => draw.change([["site.no_fly", draw.shapes["site.no_fly"].with(index,
+        { ...draw.shapes["site.no_fly"][index], [end]: value })]]));
       rows.push(element("div", { class: "numbers" }, "floor", number_input(object.name + " floor", object.bottom, (value) => set("floor", value), { "data-end": "floor" }),
         "ceiling", number_input(object.name + " ceiling", object.top, (value) => set("ceiling", value), { "data-end": "ceiling" })));
     }
     const is_default = object.id === "flight.takeoff" && !draw.shapes["flight.takeoff"];
     return element("fieldset", { "data-id": object.id }, element("legend", {}, object.name), rows,
-      is_default ? null : button("Remove " + object.name, () => draw.remove(object.id)));
+      is_default ? null : button("Remove " + object.name, () => mission.in_turn(() => draw.remove(object.id))));
   }
   return draw;
 }

@@ -19,21 +19,24 @@ function limits_text(schema) {
 }
 
 studio.steps.mission = {
-  path: "", text: "", version: "", values: {}, inputs: new Map(),
+  path: "", text: "", version: "", values: {}, inputs: new Map(), turn: Promise.resolve(),
   build(section) {
     this.file = select([]);
     this.file.addEventListener("change", () => this.open(this.file.value).catch((failure) => say(failure.message)));
     this.area = element("textarea", { spellcheck: "false", "aria-label": "Mission file", wrap: "off" });
     this.area.addEventListener("change", () => {
-      this.history.add(this.text);
-      this.set_text(this.area.value).catch((failure) => say(failure.message));
+      const text = this.area.value;
+      this.in_turn(() => {
+        this.history.add(this.text);
+        return this.set_text(text);
+      }).catch((failure) => say(failure.message));
     });
     this.form = element("div");
     this.problem = element("p", { class: "bad", role: "alert", hidden: true });
     this.conflict = element("div", { hidden: true, role: "alert" });
     this.is_saved = element("span", { role: "status" });
     this.output = make_output("Output of the command");
-    this.history = make_history(() => this.text, (text) => this.set_text(text));
+    this.history = make_history(() => this.text, (text) => this.in_turn(() => this.set_text(text)));
     this.checked = element("p", { role: "status", id: "checked" });
     this.draw = make_draw(this);
     this.variants = make_variants(this);
@@ -89,7 +92,13 @@ studio.steps.mission = {
       this.show_text({ error: failure.message });
     }
   },
-  set(key, value) { return this.set_all([[key, value]]); },
+  /// Runs an action that reads and changes the mission after all earlier ones have ended.
+  in_turn(action) {
+    const result = this.turn.then(action);
+    this.turn = result.catch(() => {});
+    return result;
+  },
+  set(key, value) { return this.in_turn(() => this.set_all([[key, value]])); },
   /// Sets several keys in one step of the history.
   async set_all(pairs) {
     this.require_mission();

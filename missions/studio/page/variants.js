@@ -14,10 +14,10 @@ const variants = [
 /// Returns the figures of a row from summary.json.
 function variant_figures(summary) {
   const { flight = {} } = summary, sorties = (flight.route || {}).sorties || [];
-  const minutes = sorties.reduce((sum, sortie) => sum + (sortie.fly_through || sortie).duration_s, 0) / 60;
+  const minutes = sorties.reduce((sum, sortie) => sum + (sortie.passage || sortie).duration_s, 0) / 60;
   const written = (flight.written || [])[0], share = (value) => (typeof value === "number" ? (100 * value).toFixed(2) + "%" : "–");
   const visible = written ? written.coverage_visible : summary.coverage_visible;
-  const complete = summary.photo && summary.photo.complete;
+  const complete = summary.photo && summary.photo.figures.expected_completeness;
   return { views: (summary.per_view || []).length, stations: sorties.reduce((sum, one) => sum + one.last_station - one.first_station + 1, 0),
     minutes: sorties.length ? minutes.toFixed(1) : "–", sorties: sorties.length,
     coverage: share(typeof visible === "number" ? visible : typeof complete === "number" ? complete : written ? written.coverage : summary.coverage) };
@@ -28,7 +28,7 @@ function make_variants(mission) {
   const table = { output };
   const cells = (text, attributes = {}) => element("td", attributes, text);
   table.box = element("details", { id: "variants" }, element("summary", {}, "Compare variants"),
-    element("p", { class: "note" }, "Coverage of the visible surface in the simulated re-flight of the exported mission; minutes from take-off to landing."),
+    element("p", { class: "note" }, "Coverage: of the visible surface, in the simulated re-flight of the exported mission; of photos, the expected completeness. Minutes: from take-off to landing."),
     element("div", { class: "wide" }, element("table", {}, element("thead", {}, element("tr", {},
       ["Variant", "Views", "Minutes", "Sorties", "Coverage", "Command", ""].map((text) => element("th", { scope: "col" }, text)))), rows)),
     element("div", { class: "actions" }, button("Plan all variants", () => table.plan_all(), { id: "plan-all" })), output.box);
@@ -61,11 +61,11 @@ function make_variants(mission) {
       return element("tr", { "data-variant": variant.ending || "_shortest" }, element("th", { scope: "row" }, variant.name),
         values ? values.map((text) => cells(text, { class: "number" })) : cells(problem, { colspan: "4", class: "bad" }),
         cells(element("code", {}, command_of(variant))),
-        cells(element("div", { class: "actions" }, button("Plan " + variant.name, () => table.plan(variant)),
-          figures ? button("Open " + variant.name, async () => {
+        cells(element("div", { class: "actions" }, button("Plan", () => table.plan(variant), { "aria-label": "Plan " + variant.name }),
+          figures ? button("Open", async () => {
             await studio.steps.results.open(folder);
             go_to("results");
-          }) : null)));
+          }, { "aria-label": "Open " + variant.name }) : null)));
     },
     async plan(variant) {
       await mission.save_if_changed();

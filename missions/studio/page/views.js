@@ -26,32 +26,38 @@ function leg_points(views, i, original) {
   return is_same(view) && view.from === before && (i === 0 || is_same(views[i - 1])) ? view.via : [];
 }
 
-/// Returns the route as a Skycap trajectory, and the time of each view as the program prints it.
+/// Returns the route as a Skycap trajectory with a row per second, and the time of each view as the
+/// program prints it. The camera turns evenly on each leg, so that only corners and views become
+/// waypoints.
 function route_text(views, original) {
   const rows = [], times = [];
   let time = 0, last = null;
-  const row = (place, direction, shot) => {
-    const yaw = Math.atan2(direction[1], direction[0]), pitch = Math.asin(Math.max(-1, Math.min(1, direction[2])));
+  const angles_of = ([x, y, z]) => [Math.atan2(y, x), Math.asin(Math.max(-1, Math.min(1, z)))];
+  const add_row = (place, [yaw, pitch], shot) => {
     const numbers = [time, ...place, 0, 0, 0, 0, 0, 0, yaw, 0, pitch];
     rows.push(numbers.map((value) => value.toFixed(6)).join(",") + "," + shot);
   };
-  const fly = (place, direction, shot) => {
-    if (last) {
-      const length = Math.hypot(...place.map((value, axis) => value - last[axis]));
-      const steps = Math.max(1, Math.ceil(length / edit_speed)), start = time;
-      for (let i = 1; i < steps; ++i) {
-        time = start + i;
-        row(place.map((value, axis) => last[axis] + (value - last[axis]) * i / steps), direction, 0);
-      }
-      time = start + steps;
-    }
-    row(place, direction, shot);
-    last = place;
-  };
+  const length_of = (from, to) => Math.hypot(...to.map((value, axis) => value - from[axis]));
   views.forEach((view, i) => {
-    leg_points(views, i, original).forEach((place) => fly(place, view.direction, 0));
-    fly(view.position, view.direction, 1);
+    const goal = angles_of(view.direction);
+    if (last) {
+      const places = [last.place, ...leg_points(views, i, original), view.position];
+      const durations = places.slice(1).map((to, k) => Math.max(1, Math.ceil(length_of(places[k], to) / edit_speed)));
+      const start = time, whole = durations.reduce((sum, one) => sum + one, 0);
+      const turn = Math.atan2(Math.sin(goal[0] - last.angles[0]), Math.cos(goal[0] - last.angles[0]));
+      durations.forEach((duration, k) => {
+        for (let step = 1; step <= duration; ++step) {
+          time += 1;
+          if (time === start + whole) break;  // the view
+          const share = (time - start) / whole;
+          add_row(places[k].map((value, axis) => value + (places[k + 1][axis] - value) * step / duration),
+            [last.angles[0] + share * turn, last.angles[1] + share * (goal[1] - last.angles[1])], 0);
+        }
+      });
+    }
+    add_row(view.position, goal, 1);
     times.push(time.toFixed(1));
+    last = { place: view.position, angles: goal };
   });
   const head = "# frame: ENU (x east, y north, z up), yaw counter-clockwise from east, metres, radians\n" +
     "t,x,y,z,vx,vy,vz,ax,ay,az,yaw,yaw_rate,gimbal_pitch,shot\n";
@@ -70,7 +76,7 @@ function direction_of(heading, pitch) {
 function make_view_editor(stage, folder) {
   const editor = { views: [], original: [], selected: 0, folder: "" };
   const history = make_history(() => editor.views, (views) => editor.set(views, true));
-  const list = element("select", { size: "9", id: "views", "aria-label": "Views in flight order" });
+  const list = element("select", { size: "6", id: "views", "aria-label": "Views in flight order" });
   list.addEventListener("change", () => editor.select(list.selectedIndex));
   const names = ["x", "y", "z", "heading", "pitch"];
   const inputs = names.map((name) => number_input("View " + name, null, (value) => editor.enter(name, value), { "data-name": name }));
@@ -81,14 +87,14 @@ function make_view_editor(stage, folder) {
   editor.box = element("div", { hidden: true, id: "view-editor" },
     element("h3", {}, "Views"),
     element("p", { class: "note" }, "Drag a view in the 3-D view, with Shift vertically, or enter numbers: metres in the mission frame and degrees."),
-    list,
+    element("div", { class: "actions" }, button("Verify", () => editor.verify(), { class: "main", id: "verify" }),
+      element("label", {}, repairs, " Lead legs round obstacles")),
+    verdict, files, list,
     element("div", { class: "fields" }, names.flatMap((name, i) => field({ x: "x [m]", y: "y [m]", z: "z [m]", heading: "Heading [°]",
       pitch: "Gimbal pitch [°]" }[name], inputs[i]))),
     element("div", { class: "actions" }, button("Add a view after it", () => editor.add(), { id: "add-view" }),
       button("Remove the view", () => editor.remove(), { id: "remove-view" }), history.undo, history.redo),
-    element("div", { class: "actions" }, button("Verify", () => editor.verify(), { class: "main", id: "verify" }),
-      element("label", {}, repairs, " Lead legs round obstacles")),
-    verdict, files, output.box);
+    output.box);
 
   const changed = (change) => editor.set(editor.views.with(editor.selected, { ...editor.views[editor.selected], ...change }));
   Object.assign(editor, {

@@ -364,6 +364,9 @@ TEST(MissionEdit, PreservesCommentsAndLayout) {
             replaced("vehicle\n  vehicle", "vehicle\n  clearance: 2\n  vehicle"));
   EXPECT_EQ(with_key(text, "site.max_height", "50"), text + "site:\n  max_height: 50\n");
   EXPECT_EQ(with_key(text, "site.max_height", ""), text);
+  const std::string box = with_key(text, "planner.scene_box.min", "[1, 2, 3]");
+  EXPECT_EQ(box, text + "planner:\n  scene_box:\n    min: [1, 2, 3]\n");
+  EXPECT_EQ(with_key(box, "planner.scene_box.min", ""), text + "planner:\n");
   EXPECT_EQ(list_values(text, "x").at("flight.takeoff"), "[1, 2, 3]");
 }
 
