@@ -127,7 +127,8 @@ wizard::SiteRequest to_site_request(const SiteOptions& options) {
 std::string make_page(const std::string& name, const evaluation::SimulationOptions& options,
                       const fs::path& file) {
   if (options.scene.model.empty()) {  // a photo mission: its target is prior data alone
-    return report::mission_page(name, options.survey, options.scene, report::target_points(options.scene),
+    return report::mission_page(name, options.survey, options.scene,
+                                report::target_points(options.scene),
                                 options.survey.flight.takeoff);
   }
   constexpr unsigned all_processors = 0;

@@ -43,6 +43,7 @@ void RequestGuard::set_port(int port) {
 }
 
 std::optional<Realm> RequestGuard::find_realm(const std::string& path) const {
+  if (!path.starts_with('/')) return std::nullopt;
   const std::string_view token = std::string_view(path).substr(1, path.find('/', 1) - 1);
   const bool is_page = equal_in_constant_time(token, page_token_);
   const bool is_file = equal_in_constant_time(token, file_token_);

@@ -104,8 +104,8 @@ Json mission_json(const VersionedText& mission, const std::string& name) {
   return json;
 }
 
-/// Views in the journal of an interrupted or running survey, at most 500. There is no journal before
-/// the first view and after the end.
+/// Views in the journal of an interrupted or running survey, at most 500. There is no journal
+/// before the first view and after the end.
 Json survey_progress(const fs::path& results, std::size_t from) {
   constexpr std::size_t max_views = 500;
   Json views = Json::array();
@@ -252,8 +252,10 @@ HttpAnswer Service::answer_get(const std::string& path, const HttpRequest& reque
     return json_answer({{"files", to_json(folder_.list_package(find_query(request, "path")))}});
   if (path == "/api/progress") {
     const std::optional<int> from = to_number<int>(find_query(request, "from"));
-    return json_answer(survey_progress(folder_.resolve(find_query(request, "path")),
-                                       static_cast<std::size_t>(std::max(0, from.value_or(0)))));
+    const fs::path results = folder_.resolve(find_query(request, "path"));
+    if (!fs::is_directory(results)) return not_found();
+    return json_answer(
+        survey_progress(results, static_cast<std::size_t>(std::max(0, from.value_or(0)))));
   }
   if (path == "/api/schema") return {.body = config::mission_json_schema()};
   if (path == "/api/mission") {

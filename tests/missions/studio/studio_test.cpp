@@ -120,7 +120,8 @@ TEST_F(Studio, ServesThePageWithItsTokenOnly) {
   std::string wrong = page();
   wrong.back() = wrong.back() == '0' ? '1' : '0';
   for (const std::string& path : {std::string("/"), std::string("/api/state"), wrong + "/",
-                                  page().substr(0, 20) + "/", page() + "0/", "//" + page()}) {
+                                  page().substr(0, 20) + "/", page() + "0/", "//" + page(),
+                                  "\xff" + page().substr(1) + "/", "?" + page().substr(1) + "/"}) {
     EXPECT_THAT(get(path), forbidden) << path;
   }
   EXPECT_NE(service_->guard().page_token(), service_->guard().file_token());
