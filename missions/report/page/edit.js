@@ -90,6 +90,7 @@ class Editor {
     geometry.setAttribute("color", new THREE.Float32BufferAttribute(colours, 3));
     const points = new THREE.Points(geometry, new THREE.PointsMaterial({ size: 11 * this.viewer.ratio,
       sizeAttenuation: false, vertexColors: THREE.VertexColors, depthTest: false, transparent: true }));
+    points.onBeforeRender = () => { points.material.size = 11 * this.viewer.ratio; };
     points.renderOrder = 2;
     points.frustumCulled = false;
     return points;

@@ -68,9 +68,11 @@ studio.steps.mission = {
     this.file.value = path;
   },
   show(mission) {
+    if (mission.path !== this.path) this.draw.box.hidden = true;
     Object.assign(this, { path: mission.path, text: mission.text, saved: mission.text, version: mission.version });
     this.conflict.hidden = true;
     this.history.clear();
+    this.draw.show_views([]);
     this.show_text(mission);
   },
   show_text(mission) {
