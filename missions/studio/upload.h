@@ -29,10 +29,9 @@ class UploadList {
   UploadList& operator=(const UploadList&) = delete;
   ~UploadList();  ///< removes the temporary files
 
-  /// Starts an upload and returns its number. `name` must be a file name without a folder whose
-  /// extension check_name() permits. Throws Error{bad_usage} if the name, the size, or the number
-  /// of uploads is not permitted, Error{bad_file} if there is not enough space, and UploadConflict
-  /// if the file exists and `replaces` is false.
+  /// Starts an upload and returns its number. Throws Error{bad_usage} if check_upload_name() rejects
+  /// the name, or if the size or the number of uploads is not permitted. Throws Error{bad_file} if
+  /// there is not enough space, and UploadConflict if the file exists and `replaces` is false.
   int begin(const WorkFolder& folder, const std::string& name, std::uintmax_t bytes, bool replaces);
 
   /// Appends a piece. Throws Error{bad_usage} unless `offset` is the number of bytes so far and the
@@ -67,9 +66,9 @@ class UploadList {
   int last_id_ = 0;
 };
 
-/// Throws Error{bad_usage} unless the name is a file name without a folder and ends like a map,
-/// model, cloud, mission or route, or like a file that belongs to one of these. Programs, modules
-/// and web pages are rejected.
+/// Throws Error{bad_usage} unless the name is a file name without a folder with a permitted ending:
+/// that of a map, model, cloud, mission or route, or of a file that belongs to one of these.
+/// Programs, modules and web pages are rejected.
 void check_upload_name(const std::string& name);
 
 }  // namespace skycap::missions::studio

@@ -364,14 +364,15 @@ class StudioTest(unittest.TestCase):
         studio.click("#edit-views")
         frame = "#results .drawing iframe"
         views = Select(studio.wait("#views"))
-        self.assertEqual(len(views.options), 15)
+        count = len(views.options)
+        self.assertGreater(count, 10)
         self.assertTrue(studio.wait("#results .undo").get_attribute("disabled"))
         studio.drag_handle(frame, "3", (25, 0))
         studio.wait_for(lambda: studio.wait("#verdict").text == "Changed; not verified.")
         studio.click("#add-view")
-        studio.wait_for(lambda: len(views.options) == 16)
+        studio.wait_for(lambda: len(views.options) == count + 1)
         studio.click("#remove-view")
-        studio.wait_for(lambda: len(views.options) == 15)
+        studio.wait_for(lambda: len(views.options) == count)
         for _ in range(3):
             studio.click("#results .undo")
         studio.click("#verify")

@@ -37,7 +37,7 @@ studio.steps.results = {
     })),
       ...pages.map((name) => element("a", { class: "button", href: file_address(path + "/" + name), target: "_blank", rel: "noopener" },
         (names[name] || name) + " in a new tab")),
-      ...(pages.includes("report.html") ? [button("Edit the views", () => this.edit(), { id: "edit-views" })] : []));
+      ...(pages.includes("report.html") && files.some((file) => file.path === "summary.json") ? [button("Edit the views", () => this.edit(), { id: "edit-views" })] : []));
     const main = ["report.html", "scan.html", ...pages].find((name) => pages.includes(name));
     if (main) this.stage.show(path + "/" + main);
     this.rows.replaceChildren(...files.map((file) => element("tr", {}, element("td", {}, file.path),

@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include "geometry/error.h"
+#include "geometry/io/record_log.h"
 #include "missions/studio/command_table.h"
 #include "missions/studio/mission_edit.h"
 #include "missions/studio/service.h"
@@ -239,6 +240,45 @@ TEST_F(Studio, SavesOnlyTheVersionThatWasRead) {
   EXPECT_EQ(read("work/new.yaml"), "name: new\n");
   EXPECT_THROW(folder.save("new.kmz", "x", ""), Error);
   EXPECT_THROW(folder.save(".hidden.yaml", "x", ""), Error);
+}
+
+TEST_F(Studio, ListsResultsAndLiveSurveys) {
+  for (const char* name : {"plan/summary.json", "live/live.journal", "other/notes.txt"}) {
+    fs::create_directories((folder_.path() / "work" / name).parent_path());
+    write("work/" + std::string(name), "{}");
+  }
+  std::vector<std::string> packages;
+  for (const ListedFile& file : service_->folder().list().files) {
+    if (file.kind == "package") packages.push_back(file.path);
+  }
+  EXPECT_THAT(packages, ElementsAre("live", "plan"));
+}
+
+TEST_F(Studio, ReportsTheViewsOfARunningSurvey) {
+  fs::create_directories(folder_.path() / "work/plan");
+  EXPECT_THAT(get(page() + "/api/progress?path=plan"), AllOf(ok, HasSubstr("\"views\":[]")));
+  {
+    geometry::RecordLog log(folder_.path() / "work/plan/survey.journal");
+    log.append("{}");
+    for (const char* x : {"1.5", "2.5"}) {
+      log.append(std::string(R"({"position": [)") + x +
+                 R"(, 0, 9], "direction": [1, 0, 0], "returns": 5, "points": 4, "next": {}})");
+    }
+  }
+  EXPECT_THAT(get(page() + "/api/progress?path=plan"), AllOf(HasSubstr("1.5"), HasSubstr("2.5")));
+  EXPECT_THAT(get(page() + "/api/progress?path=plan&from=1"),
+              AllOf(Not(HasSubstr("1.5")), HasSubstr("2.5"), HasSubstr("\"from\":1")));
+  EXPECT_THAT(get(page() + "/api/progress?path=missing"), StartsWith("HTTP/1.1 404"));
+  EXPECT_THAT(get(page() + "/api/progress?path=../work/plan"), StartsWith("HTTP/1.1 400"));
+  write("work/plan/survey.journal", "damaged\ndamaged\n");
+  EXPECT_THAT(get(page() + "/api/progress?path=plan"), StartsWith("HTTP/1.1 400"));
+}
+
+TEST_F(Studio, SendsAMissionOnlyIfItHasChanged) {
+  const std::string version = service_->folder().read("house.yaml").version;
+  const std::string path = page() + "/api/mission?path=house.yaml&version=";
+  EXPECT_THAT(get(path + version), AllOf(ok, Not(HasSubstr("text"))));
+  EXPECT_THAT(get(path), AllOf(ok, HasSubstr("max_views: 3")));
 }
 
 TEST_F(Studio, ReceivesAFileInPieces) {
