@@ -108,9 +108,14 @@ Json mission_json(const VersionedText& mission, const std::string& name) {
 /// before the first view and after the end.
 Json survey_progress(const fs::path& results, std::size_t from) {
   constexpr std::size_t max_views = 500;
+  constexpr std::uintmax_t max_journal = std::uintmax_t{64} << 20;  // [byte]
   Json views = Json::array();
-  const std::vector<std::string> records =
-      geometry::read_records(results / simulation::journal_name).records;
+  const fs::path file = results / simulation::journal_name;
+  std::error_code ignored;
+  if (fs::is_regular_file(file, ignored) && fs::file_size(file, ignored) > max_journal) {
+    throw Error(ErrorKind::bad_file, file.string() + ": has more than 64 MiB");
+  }
+  const std::vector<std::string> records = geometry::read_records(file).records;
   // The first record identifies the survey.
   for (std::size_t i = from + 1; i < records.size() && views.size() < max_views; ++i) {
     const Json record = geometry::parse_json<Json>(records[i]);

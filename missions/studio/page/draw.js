@@ -21,18 +21,21 @@ function flow_of(value) {
 
 const round = (value) => Math.round(100 * value) / 100;
 
-/// Tools: number of clicks, and the change that they make.
+/// Tools: number of clicks, the change that they make, and places [x, y] for entering numbers instead.
 const draw_tools = {
-  takeoff: { text: "Place the take-off point", hint: "Click the take-off point.", clicks: 1,
+  takeoff: { text: "Place the take-off point", hint: "Click the take-off point.", clicks: 1, standard: [[0, 0]],
     done: (draw, [place]) => draw.change([["flight.takeoff", place]]) },
-  rally: { text: "Add a rally point", hint: "Click the rally point.", clicks: 1,
+  rally: { text: "Add a rally point", hint: "Click the rally point.", clicks: 1, standard: [[0, 0]],
     done: (draw, [place]) => draw.change([["flight.rally", [...(draw.shapes["flight.rally"] || []), place]]]) },
   geofence: { text: "Draw the geofence", hint: "Click the corners, then Finish.", clicks: Infinity, least: 3,
+    standard: [[-50, -50], [50, -50], [50, 50], [-50, 50]],
     done: (draw, places) => draw.change([["site.geofence", places.map(([x, y]) => [x, y])]]) },
   no_fly: { text: "Add a no-fly volume", hint: "Click the corners, then Finish.", clicks: Infinity, least: 3,
+    standard: [[20, 20], [30, 20], [30, 30], [20, 30]],
     done: (draw, places) => draw.change([["site.no_fly", [...(draw.shapes["site.no_fly"] || []),
       { corners: places.map(([x, y]) => [x, y]), floor: round(draw.ground), ceiling: round(draw.ground + 50) }]]]) },
   scene: { text: "Draw the target box", hint: "Click two opposite corners of the box.", clicks: 2,
+    standard: [[-10, -10], [10, 10]],
     done: (draw, [a, b]) => draw.change([
       ["planner.scene_box.min", [Math.min(a[0], b[0]), Math.min(a[1], b[1]), round(draw.ground)]],
       ["planner.scene_box.max", [Math.max(a[0], b[0]), Math.max(a[1], b[1]), round(draw.ground + 20)]]]) },
@@ -45,6 +48,10 @@ function make_draw(mission) {
   const draw = { shapes: {}, ground: 0, pad: null, tool: null, places: [], views: [] };
   const hint = element("span", { role: "status" });
   const finish = button("Finish", () => mission.in_turn(() => draw.finish()));
+  const numbers = button("Enter numbers instead", () => mission.in_turn(() => {
+    draw.places = draw.tool.standard.map((place) => [...place, draw.ground]);
+    return draw.finish();
+  }));
   const cancel = button("Stop drawing", () => draw.use(null));
   const list = element("div");
   draw.growth = element("p", { id: "growth" });
@@ -70,7 +77,7 @@ function make_draw(mission) {
     element("p", { class: "note" }, "Drag a handle, with Shift vertically, or enter numbers in metres of the mission frame."),
     element("div", { class: "actions" }, Object.entries(draw_tools).map(([name, tool]) =>
       button(tool.text, () => draw.use(name), { "data-tool": name }))),
-    element("div", { class: "actions" }, hint, finish, cancel), list));
+    element("div", { class: "actions" }, hint, finish, numbers, cancel), list));
 
   Object.assign(draw, {
     use(name) {
@@ -118,7 +125,7 @@ function make_draw(mission) {
       draw.stage.set([...objects, ...drawing, ...draw.views], ["no_fly", "geofence", "scene"]);
       hint.textContent = draw.tool ? draw.tool.hint + " " + draw.places.length + " clicked." : "";
       finish.hidden = !draw.tool || draw.tool.clicks !== Infinity;
-      cancel.hidden = !draw.tool;
+      for (const node of [numbers, cancel]) node.hidden = !draw.tool;
       const listed = objects.map((one) => one.name + one.points.length).join();
       if (draw.listed !== listed) list.replaceChildren(...objects.map(row_of));
       draw.listed = listed;
@@ -194,6 +201,12 @@ function make_draw(mission) {
         { ...draw.shapes["site.no_fly"][index], [end]: value })]]));
       rows.push(element("div", { class: "numbers" }, "floor", number_input(object.name + " floor", object.bottom, (value) => set("floor", value), { "data-end": "floor" }),
         "ceiling", number_input(object.name + " ceiling", object.top, (value) => set("ceiling", value), { "data-end": "ceiling" })));
+    }
+    if (object.shape === "prism") {
+      rows.push(button("Add a corner to " + object.name, () => mission.in_turn(() => {
+        const points = points_now(), [first, last] = [points[0], points.at(-1)];
+        return draw.move(object.id, [...points, first.map((value, axis) => round((value + last[axis]) / 2))]);
+      })));
     }
     const is_default = object.id === "flight.takeoff" && !draw.shapes["flight.takeoff"];
     return element("fieldset", { "data-id": object.id }, element("legend", {}, object.name), rows,

@@ -10,7 +10,7 @@ function state_text(job) {
 
 /// Adds the parts of a job to the page.
 function show_job(job) {
-  const view = { ...job, lines: [], parts: {} };
+  const view = { ...job, lines: [], parts: {}, listeners: [] };
   view.parts.state = element("span", { class: "state" });
   view.parts.cancel = button("Cancel", () => request("jobs/" + job.id + "/cancel", {}));
   view.parts.log = element("pre", { tabindex: "0", role: "log", "aria-label": "Output of command " + job.id });
@@ -36,6 +36,7 @@ function update_job(view, job) {
   view.parts.state.className = "state " + (view.running ? "" : view.exit_code === 0 ? "good" : "bad");
   view.parts.cancel.hidden = !view.running;
   view.parts.box.dataset.running = view.running;
+  view.listeners.forEach((listener) => listener(view));
 }
 
 /// Follows a job until its end.

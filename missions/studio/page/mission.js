@@ -66,6 +66,16 @@ studio.steps.mission = {
     }
     this.show(await request("mission?path=" + encodeURIComponent(path)));
     this.file.value = path;
+    this.follow_running_plan();
+  },
+  /// Shows a plan of this mission that was started before the page was opened.
+  follow_running_plan() {
+    for (const job of jobs.values()) {
+      const [, mission, folder] = /^skycap plan (\S+) --out=(\S+)/.exec(job.title) || [];
+      if (!job.running || mission !== this.path || job.listeners.length) continue;
+      job.listeners.push(this.output.show, this.follow_survey(folder));
+      this.output.show(job);
+    }
   },
   show(mission) {
     if (mission.path !== this.path) this.draw.box.hidden = true;
