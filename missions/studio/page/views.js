@@ -1,8 +1,6 @@
 // Edits the views of a planned flight: they are moved, added and removed, and the program verifies the
 // new route in the space of the results folder (skycap export --route).
 
-const edit_speed = 4;  // of the track in the file [m/s]; the program plans its own speeds
-
 /// Returns [{view, position, direction, via}] in flight order. `via` are the points of the leg to the
 /// view, and the key of the leg tells whether it still applies.
 function flown_views(summary) {
@@ -26,42 +24,18 @@ function leg_points(views, i, original) {
   return is_same(view) && view.from === before && (i === 0 || is_same(views[i - 1])) ? view.via : [];
 }
 
-/// Returns the route as a Skycap trajectory with a row per second, and the time of each view as the
-/// program prints it. The camera turns evenly on each leg, so that only corners and views become
-/// waypoints.
-function route_text(views, original) {
-  const rows = [], times = [];
-  let time = 0, last = null;
-  const angles_of = ([x, y, z]) => [Math.atan2(y, x), Math.asin(Math.max(-1, Math.min(1, z)))];
-  const add_row = (place, [yaw, pitch], shot) => {
-    const numbers = [time, ...place, 0, 0, 0, 0, 0, 0, yaw, 0, pitch];
-    rows.push(numbers.map((value) => value.toFixed(6)).join(",") + "," + shot);
+/// Returns the route as a waypoint table in the mission's frame, and the name of each line's view.
+function route_text(views, original, names) {
+  const rows = ["x,y,z,heading_deg,gimbal_pitch_deg,photos"], lines = new Map();
+  const add = (place, direction, photos) => {
+    rows.push([...place, heading_of(direction), pitch_of(direction)].map((value) => value.toFixed(6)).join(",") + "," + photos);
   };
-  const length_of = (from, to) => Math.hypot(...to.map((value, axis) => value - from[axis]));
   views.forEach((view, i) => {
-    const goal = angles_of(view.direction);
-    if (last) {
-      const places = [last.place, ...leg_points(views, i, original), view.position];
-      const durations = places.slice(1).map((to, k) => Math.max(1, Math.ceil(length_of(places[k], to) / edit_speed)));
-      const start = time, whole = durations.reduce((sum, one) => sum + one, 0);
-      const turn = Math.atan2(Math.sin(goal[0] - last.angles[0]), Math.cos(goal[0] - last.angles[0]));
-      durations.forEach((duration, k) => {
-        for (let step = 1; step <= duration; ++step) {
-          time += 1;
-          if (time === start + whole) break;  // the view
-          const share = (time - start) / whole;
-          add_row(places[k].map((value, axis) => value + (places[k + 1][axis] - value) * step / duration),
-            [last.angles[0] + share * turn, last.angles[1] + share * (goal[1] - last.angles[1])], 0);
-        }
-      });
-    }
-    add_row(view.position, goal, 1);
-    times.push(time.toFixed(1));
-    last = { place: view.position, angles: goal };
+    leg_points(views, i, original).forEach((place) => add(place, view.direction, 0));
+    add(view.position, view.direction, 1);
+    lines.set("line " + rows.length, names[i]);
   });
-  const head = "# frame: ENU (x east, y north, z up), yaw counter-clockwise from east, metres, radians\n" +
-    "t,x,y,z,vx,vy,vz,ax,ay,az,yaw,yaw_rate,gimbal_pitch,shot\n";
-  return { text: head + rows.join("\n") + "\n", times };
+  return { text: rows.join("\n") + "\n", lines };
 }
 
 const heading_of = ([x, y]) => (Math.atan2(x, y) * 180 / Math.PI + 360) % 360;
@@ -166,14 +140,14 @@ function make_view_editor(stage, folder) {
       editor.set(editor.views.toSpliced(editor.selected, 1));
     },
     async verify() {
-      const started = performance.now(), { text, times } = route_text(editor.views, editor.original);
+      const started = performance.now(), view_names = [...list.options].map((one) => one.textContent);
+      const { text, lines } = route_text(editor.views, editor.original, view_names);
       const name = stem_of(editor.folder) + ".edited.csv", out = editor.folder + "_edited";
       if (!await send_file(new File([text], name), editor.is_sent === name)) return;
       editor.is_sent = name;
-      const job = await run_command("export", { package: editor.folder, "--route": name, "--simplify": "0.01", "--out": out,
+      const job = await run_command("export", { package: editor.folder, "--route": name, "--out": out,
         "--repair": repairs.checked }, output.show);
-      const view_names = new Map(times.map((time, i) => ["capture at " + time + " s", list.options[i].textContent]));
-      const said = (line) => line.replace(name + ": ", "").replace(/capture at [\d.]+ s/g, (one) => view_names.get(one) || one);
+      const said = (line) => line.replace(name + ": ", "").replace(/line \d+/g, (one) => lines.get(one) || one);
       const figures = job.lines.filter((line) => /^ {2}(flight|clearance|return|repaired|skipped) /.test(line)).map((line) => said(line.trim()));
       const seconds = ((performance.now() - started) / 1000).toFixed(1);
       const problem = job.lines.find((line) => line.includes(": leg ")) || job.lines.find((line) => line.startsWith(name + ":")) ||
