@@ -24,14 +24,17 @@ function leg_points(views, i, original) {
   return is_same(view) && view.from === before && (i === 0 || is_same(views[i - 1])) ? view.via : [];
 }
 
-/// Returns the route as a waypoint table in the mission's frame, and the name of each line's view.
+/// Returns the route as a waypoint table in the mission's frame, and what each line is.
 function route_text(views, original, names) {
   const rows = ["x,y,z,heading_deg,gimbal_pitch_deg,photos"], lines = new Map();
   const add = (place, direction, photos) => {
     rows.push([...place, heading_of(direction), pitch_of(direction)].map((value) => value.toFixed(6)).join(",") + "," + photos);
   };
   views.forEach((view, i) => {
-    leg_points(views, i, original).forEach((place) => add(place, view.direction, 0));
+    for (const place of leg_points(views, i, original)) {
+      add(place, view.direction, 0);
+      lines.set("line " + rows.length, "corner before " + names[i]);
+    }
     add(view.position, view.direction, 1);
     lines.set("line " + rows.length, names[i]);
   });
