@@ -29,9 +29,10 @@ class UploadList {
   UploadList& operator=(const UploadList&) = delete;
   ~UploadList();  ///< removes the temporary files
 
-  /// Starts an upload and returns its number. Throws Error{bad_usage} if check_upload_name() rejects
-  /// the name, or if the size or the number of uploads is not permitted. Throws Error{bad_file} if
-  /// there is not enough space, and UploadConflict if the file exists and `replaces` is false.
+  /// Starts an upload and returns its number. Throws Error{bad_usage} if check_upload_name()
+  /// rejects the name, or if the size or the number of uploads is not permitted. Throws
+  /// Error{bad_file} if there is not enough space, and UploadConflict if the file exists and
+  /// `replaces` is false.
   int begin(const WorkFolder& folder, const std::string& name, std::uintmax_t bytes, bool replaces);
 
   /// Appends a piece. Throws Error{bad_usage} unless `offset` is the number of bytes so far and the
