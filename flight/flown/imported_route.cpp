@@ -111,6 +111,36 @@ ImportedRoute read_track_file(const std::filesystem::path& file, const FlightFac
   return route;
 }
 
+constexpr std::string_view local_header = "x,y,z,heading_deg,gimbal_pitch_deg,photos";
+
+/// Reads a waypoint table whose positions are in the mission's frame.
+ImportedRoute read_local_table(std::string_view text) {
+  ImportedRoute route{.kind = "waypoint table", .heights = "mission frame"};
+  next_line(text);  // the header
+  for (std::size_t line = 2; !text.empty(); ++line) {
+    const std::string_view row = geometry::trimmed(next_line(text));
+    if (row.empty()) continue;
+    const std::string item = "line " + std::to_string(line);
+    std::vector<double> values;
+    for (const std::string& field : split(row, ',')) {
+      values.push_back(to_number(geometry::trimmed(field)).value_or(unspecified));
+    }
+    const bool has_numbers = values.size() == 6 &&
+                             std::ranges::all_of(values, [](double v) { return std::isfinite(v); });
+    if (!has_numbers || std::abs(values[3]) > 360.0 || std::abs(values[4]) > 180.0 ||
+        values[5] < 0.0 || values[5] > 100.0 || values[5] != std::floor(values[5])) {
+      throw Error(ErrorKind::bad_file, item + " must contain the numbers " +
+                                           std::string(local_header) +
+                                           " with angles up to 360 and up to 100 photos");
+    }
+    const Vector3d position(values[0], values[1], values[2]);
+    geometry::require_valid_position(position, item);
+    route.points.push_back({position, static_cast<double>(route.points.size()), values[3],
+                            values[4], 0.0, static_cast<int>(values[5]), item});
+  }
+  return route;
+}
+
 ImportedRoute read(const std::filesystem::path& file, const FlightFacts& facts,
                    bool is_georeferenced, TrackHeights heights) {
   const std::string extension = geometry::lower_extension(file);
@@ -122,6 +152,7 @@ ImportedRoute read(const std::filesystem::path& file, const FlightFacts& facts,
       require_georeference(is_georeferenced);
       return read_route_file(file, facts);
     }
+    if (geometry::trimmed(first) == local_header) return read_local_table(text);
     const bool is_trajectory = text.starts_with("# frame");
     if (!is_trajectory && !PositionTable(text)[Column::time]) {
       require_georeference(is_georeferenced);

@@ -40,7 +40,7 @@ struct ImportedRoute {
 ///
 /// - .csv: waypoint table with the columns latitude, longitude and a height; with a column of times
 ///   it is a track, see read_flown_log()
-/// - .kml: LineString or gx:Track
+/// - .kml: LineString or gx:Track; .csv with x,y,z,heading_deg,gimbal_pitch_deg,photos [m, degrees]
 /// - .plan, .waypoints, .kmz, .litchi.csv, .geojson: route files, see interpret_file()
 /// - logs and tracks of read_flown_log()
 ///

@@ -13,7 +13,6 @@
 #include "missions/report/object_map.h"
 #include "missions/site_data/file_reader.h"
 #include "missions/site_data/prior_text.h"
-#include "missions/site_data/surface_points.h"
 #include "missions/wizard/photo_proposal.h"
 #include "missions/wizard/proposal.h"
 #include "missions/wizard/target.h"
@@ -125,26 +124,11 @@ wizard::SiteRequest to_site_request(const SiteOptions& options) {
   return request;
 }
 
-/// Points on the targets of the prior data.
-std::vector<Eigen::Vector3f> target_points(const scene::SceneOptions& scene) {
-  constexpr std::size_t max_points = 100'000;
-  constexpr double spacing = 0.1;
-  std::vector<Eigen::Vector3f> points;
-  for (const site_data::Prior& prior : scene.priors->priors) {
-    if (prior.role != site_data::Role::target) continue;
-    for (const site_data::Object& object : prior.objects) {
-      const std::vector<Eigen::Vector3f> own =
-          site_data::spread_over(object, max_points, spacing).positions;
-      points.insert(points.end(), own.begin(), own.end());
-    }
-  }
-  return points;
-}
-
 std::string make_page(const std::string& name, const evaluation::SimulationOptions& options,
                       const fs::path& file) {
   if (options.scene.model.empty()) {  // a photo mission: its target is prior data alone
-    return report::mission_page(name, options.survey, options.scene, target_points(options.scene),
+    return report::mission_page(name, options.survey, options.scene,
+                                report::target_points(options.scene),
                                 options.survey.flight.takeoff);
   }
   constexpr unsigned all_processors = 0;

@@ -16,6 +16,11 @@ namespace fs = std::filesystem;
 
 report::MadePage make_mission_page(const ViewOptions& options, const config::Report& report) {
   const config::MissionSetup setup = config::read_mission(options.what, options.overrides, report);
+  if (setup.scene().model.empty()) {  // a photo mission or inspection: its target is prior data
+    return {options.out.value_or(fs::path("results") / setup.name / "mission.html"),
+            report::mission_page(setup.name, setup.survey(), setup.scene(),
+                                 report::target_points(setup.scene()), setup.flight().takeoff)};
+  }
   const evaluation::SurveyScene scene(setup.simulation, options.what.parent_path(),
                                       setup.run.threads);
   const geometry::View first = scene.first_view(setup.run.seed);

@@ -11,6 +11,8 @@
 #include "missions/report/point_figures.h"
 #include "missions/report/results.h"
 #include "missions/report/scene_outline.h"
+#include "missions/site_data/site_priors.h"
+#include "missions/site_data/surface_points.h"
 #include "missions/support/number_text.h"
 
 namespace skycap::missions::report {
@@ -83,6 +85,23 @@ std::string coloured_points_page(const std::string& title, const std::vector<std
   return page_text(title, data,
                    {{"measured", encode_cloud(points, {{{"colour", palette.point_colours}}},
                                               default_report_points)}});
+}
+
+/// Points on the targets of the prior data.
+std::vector<Eigen::Vector3f> target_points(const scene::SceneOptions& scene) {
+  constexpr std::size_t max_points = 100'000;
+  constexpr double spacing = 0.1;
+  std::vector<Eigen::Vector3f> points;
+  if (!scene.priors) return points;
+  for (const site_data::Prior& prior : scene.priors->priors) {
+    if (prior.role != site_data::Role::target) continue;
+    for (const site_data::Object& object : prior.objects) {
+      const std::vector<Eigen::Vector3f> own =
+          site_data::spread_over(object, max_points, spacing).positions;
+      points.insert(points.end(), own.begin(), own.end());
+    }
+  }
+  return points;
 }
 
 std::string mission_page(const std::string& name, const session::SurveyOptions& survey,

@@ -24,6 +24,9 @@ std::string coloured_points_page(const std::string& title, const std::vector<std
                                  std::span<const Eigen::Vector3f> points,
                                  const std::vector<std::array<std::uint8_t, 3>>& colours);
 
+/// Returns points on the targets of the prior data, for missions without a simulated scene.
+std::vector<Eigen::Vector3f> target_points(const scene::SceneOptions& scene);
+
 /// Returns the HTML report of a mission's scene with its airspace limits. `surface` contains points
 /// of the model.
 std::string mission_page(const std::string& name, const session::SurveyOptions& survey,

@@ -14,6 +14,7 @@ enum class ValueKind {
   path,    ///< file or folder in the work folder
   preset,  ///< name of a preset, or a file in the work folder
   flag,
+  setting,  ///< KEY=VALUE of a variant, see `settings`
 };
 
 struct CommandOption {
@@ -56,14 +57,36 @@ constexpr std::array commands{
               {"--out", path},
               {"--max-views", text},
               {"--resume", flag},
-              {"--use-prior-as-truth", flag}}}},
+              {"--use-prior-as-truth", flag},
+              {"--planner", setting},
+              {"--set", setting}}}},
     Command{"scan", {{{"mission", path}, {"--route", path}, {"--out", path}, {"--resume", flag}}}},
     Command{"evaluate",
             {{{"--cloud", path}, {"--mesh", path}, {"--model", preset}, {"--distance", text}}}},
-    Command{"export", {{{"package", path}, {"--format", text}, {"--out", path}}}},
+    Command{"export",
+            {{{"package", path},
+              {"--format", text},
+              {"--out", path},
+              {"--route", path},
+              {"--simplify", text},
+              {"--repair", flag}}}},
     Command{"fly-test", {{{"package", path}, {"--flights", text}}}},
     Command{"view", {{{"what", path}, {"--out", path}}}},
     Command{"presets", {{{"--json", flag}}}}};
+
+/// Variants of a mission. Other keys are set in the mission file, where the user sees them.
+constexpr std::array<std::string_view, 12> settings{"flight.order=survey",
+                                                    "flight.views=survey",
+                                                    "flight.views=replanned",
+                                                    "flight.style=stop",
+                                                    "flight.style=fly-through",
+                                                    "skycap",
+                                                    "nadir",
+                                                    "oblique",
+                                                    "dome",
+                                                    "facade",
+                                                    "rings",
+                                                    "corridor"};
 
 bool is_preset_name(const std::string& value) {
   constexpr std::string_view permitted =
@@ -78,6 +101,10 @@ std::string checked_value(const CommandOption& option, const std::string& value,
   if (is_file) {
     folder.resolve(value);
     return value.starts_with('-') ? "./" + value : value;
+  }
+  if (option.kind == setting && std::ranges::find(settings, value) == settings.end()) {
+    throw Error(ErrorKind::bad_usage, std::string(option.name) + ": unknown variant '" +
+                                          value.substr(0, 100) + "'; set the key in the mission");
   }
   if (value.size() > 1000 || value.find('\0') != std::string::npos) {
     throw Error(ErrorKind::bad_usage,

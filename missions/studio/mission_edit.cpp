@@ -14,20 +14,24 @@ namespace {
 using support::YamlEntry;
 using support::YamlNode;
 
-bool is_flat(const YamlNode& node) {
-  return std::ranges::all_of(node.items, [](const YamlNode& item) {
-    return item.kind == YamlNode::Kind::scalar ||
-           (item.kind == YamlNode::Kind::list && is_flat(item));
-  });
-}
-
-std::string value_text(const YamlNode& node) {
-  if (node.kind == YamlNode::Kind::null) return "";
-  if (node.kind == YamlNode::Kind::scalar)
-    return node.is_quoted ? support::yaml_quoted(node.text) : node.text;
-  std::string text = "[";
-  for (const YamlNode& item : node.items) text += (text == "[" ? "" : ", ") + value_text(item);
-  return text + "]";
+/// Returns a value in one line. Values inside lists and maps are quoted where their characters have
+/// a meaning there.
+std::string value_text(const YamlNode& node, bool is_nested = false) {
+  using Kind = YamlNode::Kind;
+  if (node.kind == Kind::null) return is_nested ? "~" : "";
+  if (node.kind == Kind::scalar) {
+    const bool needs_quotes =
+        node.is_quoted ||
+        (is_nested && node.text.find_first_of(",[]{}#:&*!|>'\"%@`") != node.text.npos);
+    return needs_quotes ? support::yaml_quoted(node.text) : node.text;
+  }
+  std::string text;
+  for (const YamlNode& item : node.items)
+    text += (text.empty() ? "" : ", ") + value_text(item, true);
+  for (const YamlEntry& entry : node.entries) {
+    text += (text.empty() ? "" : ", ") + entry.key + ": " + value_text(entry.value, true);
+  }
+  return node.kind == Kind::list ? "[" + text + "]" : "{" + text + "}";
 }
 
 void collect(const YamlNode& node, const std::string& prefix,
@@ -36,7 +40,7 @@ void collect(const YamlNode& node, const std::string& prefix,
     const std::string path = prefix + entry.key;
     if (entry.value.kind == YamlNode::Kind::map) {
       collect(entry.value, path + ".", values);
-    } else if (is_flat(entry.value)) {
+    } else {
       values[path] = value_text(entry.value);
     }
   }
@@ -76,6 +80,17 @@ YamlEntry* find_entry(YamlNode& node, const std::string& key) {
   return found == node.entries.end() ? nullptr : &*found;
 }
 
+/// Returns whether a key is the only one in its map.
+bool is_only_entry(const YamlNode& root, const std::vector<std::string>& path) {
+  const YamlNode* node = &root;
+  for (std::size_t depth = 0; depth + 1 < path.size(); ++depth) {
+    const auto found = std::ranges::find(node->entries, path[depth], &YamlEntry::key);
+    if (found == node->entries.end()) return false;
+    node = &found->value;
+  }
+  return node->entries.size() == 1 && node->entries[0].key == path.back();
+}
+
 /// Sets a value in the tree. nullopt removes the key.
 void set_value(YamlNode& node, const std::vector<std::string>& path, std::size_t depth,
                const std::optional<YamlNode>& value) {
@@ -95,38 +110,105 @@ void set_value(YamlNode& node, const std::vector<std::string>& path, std::size_t
   }
 }
 
-/// Returns the end of the value that begins at `at`, within its line.
-std::size_t find_value_end(const std::string& text, std::size_t at, bool is_in_flow) {
-  if (at >= text.size()) return text.size();
-  const char first = text[at];
-  if (first == '"' || first == '\'') {
-    std::size_t end = at + 1;
-    for (; end < text.size() && text[end] != '\n'; ++end) {
-      if (text[end] == '\\' && first == '"') {
-        ++end;
-      } else if (text[end] == first) {
-        if (first == '"' || end + 1 >= text.size() || text[end + 1] != first) return end + 1;
-        ++end;
+/// Value of a key in the text. A value may continue on further lines.
+struct ValueRange {
+  std::size_t begin = 0, end = 0;
+  bool is_block = false;              ///< the value begins on the line after the key
+  std::vector<std::string> comments;  ///< within the value, without "#" and spaces around
+};
+
+std::string trimmed_comment(const std::string& text, std::size_t begin, std::size_t end) {
+  while (begin < end && (text[begin] == '#' || text[begin] == ' ')) ++begin;
+  while (end > begin && (text[end - 1] == ' ' || text[end - 1] == '\r')) --end;
+  return text.substr(begin, end - begin);
+}
+
+bool is_comment(const std::string& text, std::size_t at) {
+  return text[at] == '#' && (at == 0 || text[at - 1] == ' ' || text[at - 1] == '\n');
+}
+
+/// Returns the position after a quoted string that begins at `at`.
+std::size_t quote_end(const std::string& text, std::size_t at) {
+  const char quote = text[at];
+  for (++at; at < text.size() && text[at] != '\n'; ++at) {
+    if (text[at] == '\\' && quote == '"') {
+      ++at;
+    } else if (text[at] == quote) {
+      if (quote == '"' || at + 1 >= text.size() || text[at + 1] != quote) return at + 1;
+      ++at;
+    }
+  }
+  return std::min(at, text.size());
+}
+
+/// Returns the end of a list or map in brackets.
+ValueRange find_flow(const std::string& text, std::size_t begin) {
+  ValueRange range{.begin = begin, .end = begin, .comments = {}};
+  int depth = 0;
+  for (std::size_t at = begin; at < text.size(); ++at) {
+    if (text[at] == '"' || text[at] == '\'') {
+      at = quote_end(text, at) - 1;
+    } else if (is_comment(text, at)) {
+      const std::size_t end = std::min(text.find('\n', at), text.size());
+      range.comments.push_back(trimmed_comment(text, at, end));
+      at = end - 1;
+    } else if (text[at] == '[' || text[at] == '{') {
+      ++depth;
+    } else if ((text[at] == ']' || text[at] == '}') && --depth == 0) {
+      range.end = at + 1;
+      return range;
+    }
+  }
+  return range;
+}
+
+/// Returns the lines after `begin`, the end of the line of a key at the column `indent`, that
+/// belong to the key.
+ValueRange find_block(const std::string& text, std::size_t begin, std::size_t indent) {
+  ValueRange range{.begin = begin, .end = begin, .is_block = true, .comments = {}};
+  std::vector<std::string> comments;  // those after the last value belong to the next key
+  for (std::size_t line = begin; line < text.size();) {
+    const std::size_t end = std::min(text.find('\n', line + 1), text.size());
+    const std::size_t first = std::min(text.find_first_not_of(" \r", line + 1), end);
+    if (first < end && !is_comment(text, first)) {
+      const std::size_t column = first - line - 1;
+      if (column < indent || (column == indent && text[first] != '-')) break;
+      range.end = end;
+      range.comments.insert(range.comments.end(), comments.begin(), comments.end());
+      comments.clear();
+    }
+    for (std::size_t at = first; at < end; ++at) {
+      if (text[at] == '"' || text[at] == '\'') {
+        at = quote_end(text, at) - 1;
+      } else if (is_comment(text, at)) {
+        auto& list = first < at ? range.comments : comments;
+        list.push_back(trimmed_comment(text, at, end));
+        break;
       }
     }
-    return end;
+    line = end;
   }
-  if (first == '[' || first == '{') {
-    int depth = 0;
-    for (std::size_t end = at; end < text.size() && text[end] != '\n'; ++end) {
-      if (text[end] == '[' || text[end] == '{') ++depth;
-      if ((text[end] == ']' || text[end] == '}') && --depth == 0) return end + 1;
-    }
-    return at;  // continues on the next line
+  return range;
+}
+
+/// Returns the value that begins at `at`, which is not a space. `indent` is the column of the key.
+ValueRange find_value(const std::string& text, std::size_t at, bool is_in_flow,
+                      std::size_t indent) {
+  const std::size_t line_end = std::min(text.find('\n', at), text.size());
+  if (at == line_end || is_comment(text, at)) {
+    if (is_in_flow) return {.begin = at, .end = at, .comments = {}};
+    return find_block(text, line_end, indent);
   }
+  if (text[at] == '[' || text[at] == '{') return find_flow(text, at);
+  if (text[at] == '"' || text[at] == '\'')
+    return {.begin = at, .end = quote_end(text, at), .comments = {}};
   std::size_t end = at;
-  while (end < text.size() && text[end] != '\n') {
-    if (text[end] == '#' && end > at && text[end - 1] == ' ') break;
+  while (end < line_end && !is_comment(text, end)) {
     if (is_in_flow && (text[end] == ',' || text[end] == '}')) break;
     ++end;
   }
-  while (end > at && text[end - 1] == ' ') --end;
-  return end;
+  while (end > at && (text[end - 1] == ' ' || text[end - 1] == '\r')) --end;
+  return {.begin = at, .end = end, .comments = {}};
 }
 
 std::size_t line_start(const std::string& text, int line) {
@@ -170,13 +252,24 @@ std::optional<std::string> replace_value(const std::string& text, const YamlEntr
   const bool is_flow = is_in_flow(text, line, *key);
   std::size_t begin = *key + entry.key.size() + 1;
   while (begin < text.size() && text[begin] == ' ') ++begin;
-  std::size_t end = find_value_end(text, begin, is_flow);
+  const ValueRange range = find_value(text, begin, is_flow, *key - line);
+  std::size_t end = range.end;
   if (!value.empty()) {
+    // Comments within the value are kept before the line, because the new value is one line.
+    std::string comments;
+    const std::string indent(is_flow ? text.find_first_not_of(' ', line) - line : *key - line, ' ');
+    for (const std::string& comment : range.comments) comments += indent + "# " + comment + "\n";
+    const std::string before = text.substr(0, line) + comments;
+    if (range.is_block) {
+      const std::size_t colon = *key + entry.key.size() + 1;
+      return before + text.substr(line, colon - line) + " " + value +
+             text.substr(colon, range.begin - colon) + text.substr(end);
+    }
     const std::string space = text[begin - 1] == ':' ? " " : "";
-    return text.substr(0, begin) + space + value + text.substr(end);
+    return before + text.substr(line, begin - line) + space + value + text.substr(end);
   }
   if (!is_flow) {
-    const std::size_t next = text.find('\n', end);
+    const std::size_t next = end < text.size() ? text.find('\n', end) : std::string::npos;
     return text.substr(0, line) + (next == std::string::npos ? "" : text.substr(next + 1));
   }
   begin = *key;
@@ -261,8 +354,10 @@ std::map<std::string, std::string> list_values(const std::string& text, const st
 }
 
 std::string with_key(const std::string& text, const std::string& key, const std::string& value) {
-  const std::vector<std::string> path = split_path(key);
+  std::vector<std::string> path = split_path(key);
   YamlNode root = support::parse_yaml(text, "mission");
+  // A map that would be empty is removed, except the sections at the top.
+  while (value.empty() && path.size() > 2 && is_only_entry(root, path)) path.pop_back();
   YamlNode expected = root;
   set_value(expected, path, 0,
             value.empty() ? std::nullopt : std::optional(parse_value(key, value)));

@@ -43,6 +43,7 @@ void RequestGuard::set_port(int port) {
 }
 
 std::optional<Realm> RequestGuard::find_realm(const std::string& path) const {
+  if (!path.starts_with('/')) return std::nullopt;
   const std::string_view token = std::string_view(path).substr(1, path.find('/', 1) - 1);
   const bool is_page = equal_in_constant_time(token, page_token_);
   const bool is_file = equal_in_constant_time(token, file_token_);
@@ -66,8 +67,11 @@ std::optional<HttpAnswer> RequestGuard::reject(const HttpRequest& request) const
   if (!realm) return rejection(403, "wrong token; open the address that skycap studio has printed");
   if (is_read) return std::nullopt;
   if (*realm != Realm::page || !is_from_page) return rejection(403, "POST requires the page");
-  if (request.content_type != "application/json" || request.is_encoded) {
-    return rejection(415, "content must be application/json without compression");
+  const bool is_piece = request.path.starts_with("/" + page_token_ + "/api/uploads/") &&
+                        request.query.contains("offset");
+  const char* const type = is_piece ? "application/octet-stream" : "application/json";
+  if (request.content_type != type || request.is_encoded) {
+    return rejection(415, std::string("content must be ") + type + " without compression");
   }
   return std::nullopt;
 }

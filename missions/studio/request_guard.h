@@ -35,7 +35,7 @@ class RequestGuard {
   const std::string& file_token() const { return file_token_; }
 
   /// Returns the answer to a rejected request, or nullopt. GET, HEAD and POST are permitted; POST
-  /// requires the page's token, its Origin and JSON.
+  /// requires the page's token, its Origin and JSON; pieces of uploads are binary.
   std::optional<HttpAnswer> reject(const HttpRequest& request) const;
 
   /// Returns the realm of a path, or nullopt if the token is wrong.

@@ -4,18 +4,21 @@
 //     GET  /api/state               folder, file to open, tokens, jobs
 //     GET  /api/files               files of the work folder
 //     GET  /api/package?path=       files of a results folder
+//     GET  /api/progress?path=&from= views of a survey that is being planned, from its journal
 //     GET  /api/schema              JSON Schema of mission files
-//     GET  /api/mission?path=       text, version and values
+//     GET  /api/mission?path=       text, version and values; version= : nothing if unchanged
 //     POST /api/edit                {text, key, value}: text with the key set, and its values
 //     POST /api/save                {path, text, version}: 409 if the file has changed
-//     POST /api/jobs                {command, options, draft}: starts a command
-//     GET  /api/jobs/N?from=        state and output lines of a job
-//     GET  /api/jobs/N/events       the same as server-sent events
-//     POST /api/jobs/N/cancel
+//     POST /api/uploads             {name, bytes, replace}: starts an upload; 409 if the file
+//     exists POST /api/uploads/N?offset=   appends the content to the file POST /api/uploads/N/end
+//     publishes the complete file POST /api/uploads/N/cancel POST /api/jobs {command, options,
+//     draft}: starts a command GET  /api/jobs/N?from=        state and output lines of a job GET
+//     /api/jobs/N/events       the same as server-sent events POST /api/jobs/N/cancel
 //
 // Below the token for files: GET /PATH, or /PATH?download=1.
 #include "missions/studio/service.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <chrono>
@@ -26,7 +29,10 @@
 
 #include "geometry/error.h"
 #include "geometry/io/file.h"
+#include "geometry/io/json.h"
+#include "geometry/io/record_log.h"
 #include "missions/config/mission_keys.h"
+#include "missions/simulation/survey_journal.h"
 #include "missions/studio/command_table.h"
 #include "missions/studio/mission_edit.h"
 #include "missions/studio/page_parts.h"
@@ -98,13 +104,36 @@ Json mission_json(const VersionedText& mission, const std::string& name) {
   return json;
 }
 
+/// Views in the journal of an interrupted or running survey, at most 500. There is no journal
+/// before the first view and after the end.
+Json survey_progress(const fs::path& results, std::size_t from) {
+  constexpr std::size_t max_views = 500;
+  constexpr std::uintmax_t max_journal = std::uintmax_t{64} << 20;  // [byte]
+  Json views = Json::array();
+  const fs::path file = results / simulation::journal_name;
+  std::error_code ignored;
+  if (fs::is_regular_file(file, ignored) && fs::file_size(file, ignored) > max_journal) {
+    throw Error(ErrorKind::bad_file, file.string() + ": has more than 64 MiB");
+  }
+  const std::vector<std::string> records = geometry::read_records(file).records;
+  // The first record identifies the survey.
+  for (std::size_t i = from + 1; i < records.size() && views.size() < max_views; ++i) {
+    const Json record = geometry::parse_json<Json>(records[i]);
+    views.push_back({{"position", record.at("position")},
+                     {"direction", record.at("direction")},
+                     {"points", record.at("points")}});
+  }
+  return {{"from", from}, {"views", std::move(views)}};
+}
+
 std::string find_query(const HttpRequest& request, const std::string& name) {
   const auto found = request.query.find(name);
   return found == request.query.end() ? "" : found->second;
 }
 
-std::optional<int> to_number(std::string_view text) {
-  int number = 0;
+template <class Number>
+std::optional<Number> to_number(std::string_view text) {
+  Number number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   return error == std::errc() && end == text.data() + text.size() ? std::optional(number)
                                                                   : std::nullopt;
@@ -162,7 +191,8 @@ Service::Service(WorkFolder folder, fs::path program, std::string opened)
     : folder_(std::move(folder)),
       program_(std::move(program)),
       opened_(std::move(opened)),
-      guard_(make_token(), make_token()) {}
+      guard_(make_token(), make_token()),
+      uploads_(folder_.path()) {}
 
 std::optional<HttpAnswer> Service::reject(const HttpRequest& head) const {
   std::optional<HttpAnswer> rejection = guard_.reject(head);
@@ -225,20 +255,30 @@ HttpAnswer Service::answer_get(const std::string& path, const HttpRequest& reque
   }
   if (path == "/api/package")
     return json_answer({{"files", to_json(folder_.list_package(find_query(request, "path")))}});
+  if (path == "/api/progress") {
+    const std::optional<int> from = to_number<int>(find_query(request, "from"));
+    const fs::path results = folder_.resolve(find_query(request, "path"));
+    if (!fs::is_directory(results)) return not_found();
+    return json_answer(
+        survey_progress(results, static_cast<std::size_t>(std::max(0, from.value_or(0)))));
+  }
   if (path == "/api/schema") return {.body = config::mission_json_schema()};
   if (path == "/api/mission") {
     const std::string name = find_query(request, "path");
-    return json_answer(mission_json(folder_.read(name), name));
+    const VersionedText mission = folder_.read(name);
+    if (mission.version == find_query(request, "version"))
+      return json_answer({{"version", mission.version}});
+    return json_answer(mission_json(mission, name));
   }
   constexpr std::string_view prefix = "/api/jobs/";
   if (!path.starts_with(prefix)) return not_found();
   const std::string rest = path.substr(prefix.size());
   const bool is_stream = rest.ends_with("/events");
-  const std::optional<int> id = to_number(rest.substr(0, rest.find('/')));
+  const std::optional<int> id = to_number<int>(rest.substr(0, rest.find('/')));
   const std::shared_ptr<Job> job = id ? jobs_.find(*id) : nullptr;
   if (!job) return not_found();
   if (is_stream) return stream_job(job);
-  const std::optional<int> first = to_number(find_query(request, "from"));
+  const std::optional<int> first = to_number<int>(find_query(request, "from"));
   return json_answer(to_json(job->state(static_cast<std::size_t>(std::max(0, first.value_or(0))))));
 }
 
@@ -269,9 +309,10 @@ HttpAnswer Service::stream_job(const std::shared_ptr<Job>& job) {
 
 HttpAnswer Service::answer_post(const std::string& path, const HttpRequest& request) {
   if (path == "/api/jobs") return start_job(request.body);
+  if (path.starts_with("/api/uploads")) return answer_upload(path, request);
   if (path.starts_with("/api/jobs/") && path.ends_with("/cancel")) {
     const std::string rest = path.substr(std::string_view("/api/jobs/").size());
-    const std::optional<int> id = to_number(rest.substr(0, rest.find('/')));
+    const std::optional<int> id = to_number<int>(rest.substr(0, rest.find('/')));
     const std::shared_ptr<Job> job = id ? jobs_.find(*id) : nullptr;
     if (!job) return not_found();
     job->cancel();
@@ -295,6 +336,37 @@ HttpAnswer Service::answer_post(const std::string& path, const HttpRequest& requ
     }
   }
   return not_found();
+}
+
+HttpAnswer Service::answer_upload(const std::string& path, const HttpRequest& request) {
+  try {
+    if (path == "/api/uploads") {
+      const Json json = Json::parse(request.body);
+      if (!json.at("bytes").is_number_unsigned())
+        return error_answer(400, "the number of bytes must be an integer");
+      const int id =
+          uploads_.begin(folder_, text_of(json, "name"), json.at("bytes").get<std::uint64_t>(),
+                         json.at("replace").get<bool>());
+      return json_answer({{"id", id}}, 201);
+    }
+    const std::string rest = path.substr(std::string_view("/api/uploads/").size());
+    const std::size_t slash = std::min(rest.find('/'), rest.size());
+    const std::optional<int> id = to_number<int>(rest.substr(0, slash));
+    const std::string action = rest.substr(slash);
+    if (!id) return not_found();
+    if (action.empty()) {
+      const auto offset = to_number<std::uint64_t>(find_query(request, "offset"));
+      if (!offset) return error_answer(400, "the piece of a file requires its offset");
+      uploads_.add(*id, *offset, request.body);
+      return json_answer({{"received", *offset + request.body.size()}});
+    }
+    if (action == "/end") return json_answer({{"path", uploads_.end(*id)}});
+    if (action != "/cancel") return not_found();
+    uploads_.cancel(*id);
+    return json_answer({{"cancelled", *id}});
+  } catch (const UploadConflict& conflict) {
+    return json_answer({{"conflict", true}, {"path", conflict.name}}, 409);
+  }
 }
 
 HttpAnswer Service::start_job(const std::string& body) {

@@ -11,6 +11,7 @@
 #include "missions/studio/child_job.h"
 #include "missions/studio/http_interface.h"
 #include "missions/studio/request_guard.h"
+#include "missions/studio/upload.h"
 #include "missions/studio/work_folder.h"
 
 namespace skycap::missions::studio {
@@ -36,6 +37,7 @@ class Service : public RequestHandler {
   HttpAnswer answer_file(const std::string& path, const HttpRequest& request) const;
   HttpAnswer answer_get(const std::string& path, const HttpRequest& request);
   HttpAnswer answer_post(const std::string& path, const HttpRequest& request);
+  HttpAnswer answer_upload(const std::string& path, const HttpRequest& request);
   HttpAnswer start_job(const std::string& body);
   HttpAnswer stream_job(const std::shared_ptr<Job>& job);
 
@@ -44,6 +46,7 @@ class Service : public RequestHandler {
   std::string opened_;
   RequestGuard guard_;
   JobList jobs_;
+  UploadList uploads_;
   std::atomic<bool> is_stopped_ = false;
   std::atomic<int> streams_ = 0;  ///< open event streams
   std::atomic<int> drafts_ = 0;   ///< number of the last draft file

@@ -39,7 +39,9 @@ bool is_hidden(const fs::path& file) { return file.filename().string().starts_wi
 
 bool is_package(const fs::path& folder) {
   std::error_code ignored;
-  return fs::exists(folder / "summary.json", ignored) || fs::exists(folder / "scan.json", ignored);
+  // A live survey in progress has a journal and a report that reloads itself.
+  return std::ranges::any_of(std::array{"summary.json", "scan.json", "live.journal"},
+                             [&](const char* name) { return fs::exists(folder / name, ignored); });
 }
 
 bool is_within(const fs::path& path, const fs::path& folder) {

@@ -11,9 +11,11 @@ import unittest
 import urllib.request
 import zipfile
 
+from accessibility import AXE, audit
 from chromium import CHROMIUM, DRIVER, FLAGS, MISSION, main, run  # skips without selenium
 
 from selenium import webdriver
+from selenium.common.exceptions import StaleElementReferenceException
 from selenium.webdriver.chrome.options import Options
 from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.action_chains import ActionChains
@@ -72,12 +74,13 @@ class Studio:
 
     def wait(self, selector):
         """Waits until the element is visible."""
-        return WebDriverWait(self.browser, PATIENCE, 0.05).until(
+        return WebDriverWait(self.browser, PATIENCE, 0.05, [StaleElementReferenceException]).until(
             lambda browser: next((one for one in browser.find_elements(By.CSS_SELECTOR, selector)
                                   if one.is_displayed()), None), selector)
 
     def wait_for(self, condition):
-        return WebDriverWait(self.browser, PATIENCE, 0.05).until(lambda _: condition())
+        return WebDriverWait(self.browser, PATIENCE, 0.05, [StaleElementReferenceException]).until(
+            lambda _: condition())
 
     def click(self, element):
         """Clicks with the mouse at the centre of the element."""
@@ -91,6 +94,47 @@ class Studio:
         return self.wait_for(lambda: next(
             (one for one in self.browser.find_elements(By.TAG_NAME, "button")
              if one.text == text and one.is_displayed() and one.is_enabled()), None))
+
+    def canvas(self, selector, action):
+        """Performs an action in the 3-D view of a frame, whose panel is `panel` in scripts."""
+        self.browser.switch_to.frame(self.wait(selector + "[data-ready=true]"))
+        self.browser.execute_async_script(
+            "const done = arguments[0]; window.skycap.then((s) => { window.panel = s.panel; done(); });")
+        canvas = self.browser.find_element(By.TAG_NAME, "canvas")
+        self.browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", canvas)
+        try:
+            return action(canvas)
+        finally:
+            self.browser.switch_to.default_content()
+
+    def click_canvas(self, selector, places):
+        """Clicks at places in a 3-D view, as fractions of its width and height."""
+        def act(canvas):
+            for x, y in places:
+                ActionChains(self.browser).move_to_element_with_offset(
+                    canvas, round(x * canvas.size["width"] / 2), round(y * canvas.size["height"] / 2)).click().perform()
+        self.canvas(selector, act)
+
+    def drag_handle(self, selector, name, by):
+        """Drags the first handle of an object in a 3-D view by some pixels."""
+        def act(canvas):
+            at = self.browser.execute_script(
+                "const one = window.panel.editor.handles.find((handle) => handle.object.id === arguments[0]);"
+                "return window.panel.viewer.on_screen(one.place);", name)
+            chain = ActionChains(self.browser).move_to_element_with_offset(
+                canvas, round(at["x"] - canvas.size["width"] / 2), round(at["y"] - canvas.size["height"] / 2))
+            chain.click_and_hold().move_by_offset(by[0] // 2, by[1] // 2).move_by_offset(
+                by[0] - by[0] // 2, by[1] - by[1] // 2).release().perform()
+        self.canvas(selector, act)
+
+    def field(self, label):
+        return self.wait(f"input[aria-label='{label}']")
+
+    def enter(self, label, value):
+        field = self.field(label)
+        self.browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", field)
+        chain = ActionChains(self.browser).click(field).key_down(Keys.CONTROL).send_keys("a").key_up(Keys.CONTROL)
+        chain.send_keys(str(value), Keys.TAB).perform()
 
     def picture(self, name):
         """Saves a screenshot for a person, if a folder is given."""
@@ -126,6 +170,7 @@ class StudioTest(unittest.TestCase):
 
     def tearDown(self):
         if self.studio:
+            self.studio.picture("0_end_of_" + self._testMethodName)  # shows the cause of a failure
             self.assertEqual(self.studio.complaints(), [])
             self.assertEqual(self.studio.close(), 0)
         self.temporary.cleanup()
@@ -208,6 +253,188 @@ class StudioTest(unittest.TestCase):
         studio.click(studio.button("Keep this text and replace the file"))
         studio.wait_for(lambda: "name: mine" in file.read_text())
 
+    def test_adds_files_and_replaces_none_without_a_question(self):
+        studio = self.start("")
+        outside = tempfile.TemporaryDirectory()
+        self.addCleanup(outside.cleanup)
+        source = pathlib.Path(outside.name) / "tile.gml"
+        source.write_text(tile() + " " * 3_000_000)  # several pieces
+        chooser = studio.wait("#chooser")
+        chooser.send_keys(str(source))
+        studio.wait_for(lambda: (self.folder / "tile.gml").exists())
+        self.assertEqual((self.folder / "tile.gml").read_bytes(), source.read_bytes())
+        studio.button("tile.gml")
+        studio.picture("10_added")
+        source.write_text(tile())
+        chooser.send_keys(str(source))
+        studio.wait("dialog")
+        studio.picture("11_question")
+        studio.click(studio.button("Keep it"))
+        studio.wait_for(lambda: "No file added" in studio.wait("#sent").text)
+        self.assertGreater((self.folder / "tile.gml").stat().st_size, 3_000_000)
+        chooser.send_keys(str(source))
+        studio.wait("dialog")
+        studio.click(studio.button("Replace it"))
+        studio.wait_for(lambda: (self.folder / "tile.gml").read_text() == tile())
+        # A dropped web page is rejected, and nothing remains of it.
+        studio.browser.execute_script("""
+            const transfer = new DataTransfer();
+            transfer.items.add(new File(["<script>"], arguments[0]));
+            document.querySelector("#drop").dispatchEvent(
+                new DragEvent("drop", { dataTransfer: transfer, bubbles: true, cancelable: true }));""", "evil.html")
+        studio.wait_for(lambda: "evil.html" in studio.message())
+        studio.browser.get_log("browser")  # the rejection
+        studio.browser.execute_script("""
+            const transfer = new DataTransfer();
+            transfer.items.add(new File(["name: dropped\\n"], "dropped.yaml"));
+            document.querySelector("#drop").dispatchEvent(
+                new DragEvent("drop", { dataTransfer: transfer, bubbles: true, cancelable: true }));""")
+        studio.button("dropped.yaml")
+        self.assertEqual((self.folder / "dropped.yaml").read_text(), "name: dropped\n")
+        self.assertEqual(sorted(one.name for one in self.folder.iterdir()), ["dropped.yaml", "tile.gml"])
+
+    def test_draws_the_take_off_point_and_the_airspace(self):
+        file = self.folder / "mission.yaml"
+        file.write_text("# top\n" + MISSION % "pot" + "# end\n")
+        studio = self.start("mission.yaml")
+        frame = ".drawing iframe"
+        area = studio.wait("#mission textarea")
+        text = lambda: area.get_attribute("value")
+        studio.click(studio.button("Show in 3-D"))
+        studio.wait(frame + "[data-ready=true]")
+        studio.click("[data-tool=takeoff]")
+        studio.click_canvas(frame, [(-0.6, 0.5)])
+        studio.wait_for(lambda: "takeoff: [" in text())
+        first = studio.field("take-off x").get_attribute("value")
+        studio.drag_handle(frame, "flight.takeoff", (40, 10))
+        studio.wait_for(lambda: studio.field("take-off x").get_attribute("value") != first)
+        studio.enter("take-off y", -14.5)
+        studio.wait_for(lambda: ", -14.5, " in text())
+        studio.click("[data-tool=rally]")
+        studio.click_canvas(frame, [(0.5, 0.6)])
+        studio.wait_for(lambda: "rally: [[" in text())
+        studio.enter("rally 1 z", 0)
+        studio.click("[data-tool=geofence]")
+        studio.click_canvas(frame, [(-0.8, 0.7), (0.8, 0.7), (0.8, -0.3), (-0.8, -0.3)])
+        studio.click(studio.button("Finish"))
+        studio.wait_for(lambda: "geofence: [[" in text())
+        for i, (x, y) in enumerate(((-60, -60), (60, -60), (60, 60), (-60, 60))):
+            studio.enter(f"geofence corner {i + 1} x", x)
+            studio.enter(f"geofence corner {i + 1} y", y)
+        studio.wait_for(lambda: "geofence: [[-60, -60], [60, -60], [60, 60], [-60, 60]]" in text())
+        studio.enter("no-fly 1 ceiling", 25)
+        studio.wait_for(lambda: "ceiling: 25" in text())
+        studio.click("[data-tool=no_fly]")
+        studio.click_canvas(frame, [(0.6, 0.3), (0.75, 0.3), (0.7, 0.4)])
+        studio.click(studio.button("Finish"))
+        studio.wait_for(lambda: "ceiling: 25}, {corners" in text())
+        studio.click("[data-tool=scene]")
+        studio.click_canvas(frame, [(-0.3, 0.3), (0.3, -0.2)])
+        studio.wait_for(lambda: "scene_box:" in text())
+        studio.wait_for(lambda: "flight.rally conflicts" in studio.wait("#checked").text)  # a DJI vehicle
+        studio.picture("12_drawing")
+        studio.click(studio.button("Remove rally 1"))
+        studio.wait_for(lambda: "rally" not in text())
+        before = text()
+        studio.click(studio.button("Remove target box"))
+        studio.wait_for(lambda: "scene_box" not in text())
+        studio.click("#mission .undo")
+        studio.wait_for(lambda: text() == before)
+        studio.click("#mission .redo")
+        studio.wait_for(lambda: text() != before)
+        studio.enter("take-off x", 16)
+        studio.enter("take-off y", -16)
+        studio.enter("take-off z", 0)
+        studio.wait_for(lambda: "takeoff: [16, -16, 0]" in text())
+        studio.click(studio.button("Remove no-fly 2"))
+        studio.wait_for(lambda: "corners" not in text().split("ceiling: 25}")[1])
+        studio.wait_for(lambda: studio.wait("#checked").text == "Check passed.")
+        studio.click("#save")
+        studio.wait_for(lambda: file.read_text() == text())
+        saved = file.read_text()
+        self.assertTrue(saved.startswith("# top\n") and saved.endswith("# end\n"))
+        self.assertEqual(run("check", str(file)).returncode, 0)
+
+    def test_edits_the_views_of_a_plan_and_verifies_the_route(self):
+        shutil.copy("missions/radcliffe_camera.yaml", self.folder / "mission.yaml")
+        run("plan", str(self.folder / "mission.yaml"), "--planner", "skycap", "--out", str(self.folder / "plan"),
+            "--quiet", "--set", "evaluation.attainable_views=0", "--set", "evaluation.samples=5000")
+        studio = self.start("")
+        studio.click(studio.button("plan"))
+        studio.click("#edit-views")
+        frame = "#results .drawing iframe"
+        views = Select(studio.wait("#views"))
+        count = len(views.options)
+        self.assertGreater(count, 10)
+        self.assertTrue(studio.wait("#results .undo").get_attribute("disabled"))
+        studio.drag_handle(frame, "3", (25, 0))
+        studio.wait_for(lambda: studio.wait("#verdict").text == "Changed; not verified.")
+        studio.click("#add-view")
+        studio.wait_for(lambda: len(views.options) == count + 1)
+        studio.click("#remove-view")
+        studio.wait_for(lambda: len(views.options) == count)
+        for _ in range(3):
+            studio.click("#results .undo")
+        studio.click("#verify")
+        verdict = studio.wait("#verdict[data-exit='0']")
+        print(f"verified after {verdict.get_attribute('data-seconds')} s")
+        self.assertLessEqual(float(verdict.get_attribute("data-seconds")), 2.0)
+        self.assertIn("verified for every leg", verdict.text)
+        studio.picture("13_verified")
+        self.assertTrue((self.folder / "plan_edited/mission.kmz").exists())
+        # A view inside the building: the first leg that violates the clearance is named.
+        views.select_by_index(5)
+        for axis in "xyz":
+            studio.enter("View " + axis, {"x": 0, "y": 0, "z": 20}[axis])
+        studio.click("#verify")
+        verdict = studio.wait("#verdict[data-exit='1']")
+        self.assertIn("Not verified: leg ", verdict.text)
+        self.assertIn(views.options[5].text, verdict.text)
+        studio.picture("14_not_verified")
+
+    def test_shows_the_survey_while_it_is_planned(self):
+        shutil.copy("missions/radcliffe_camera.yaml", self.folder / "mission.yaml")
+        studio = self.start("mission.yaml")
+        studio.click("#plan")
+        frame = studio.wait(".drawing iframe[data-ready=true]")
+        count = lambda: int(frame.get_attribute("data-views") or 0)
+        studio.wait_for(lambda: count() > 3)
+        early = count()
+        studio.wait_for(lambda: count() > early)
+        self.assertIn("points", studio.wait("#growth").text)
+        studio.picture("15_growth")
+        studio.click("nav button[data-step=run]")
+        studio.click(next(one for one in studio.browser.find_elements(By.CSS_SELECTOR, ".job[data-running=true] button")
+                          if one.is_displayed()))
+        studio.wait_for(lambda: not [job for job in studio.api("state")["jobs"] if job["running"]])
+
+    def test_compares_variants(self):
+        (self.folder / "mission.yaml").write_text(MISSION % "pot")
+        studio = self.start("mission.yaml")
+        studio.click("#variants summary")
+        for ending in ("_shortest", "_replanned", "_fly_through", "_oblique"):
+            row = f"#variants tr[data-variant={ending}]"
+            studio.click(row + " button")
+            studio.wait_for(lambda: len(studio.browser.find_elements(By.CSS_SELECTOR, row + " button")) == 2
+                            or studio.browser.find_elements(By.CSS_SELECTOR, row + " .bad"))
+        studio.browser.execute_script("document.querySelector('#variants').scrollIntoView()")
+        studio.picture("16_variants")
+        row = studio.wait("#variants tr[data-variant=_replanned]")
+        self.assertIn("skycap plan mission.yaml --out=results/mission_replanned --set=flight.views=replanned", row.text)
+        summary = json.loads((self.folder / "results/mission_replanned/summary.json").read_text())
+        minutes = sum(one["duration_s"] for one in summary["flight"]["route"]["sorties"]) / 60
+        self.assertIn(f"{minutes:.1f}", row.text)
+        self.assertIn(f"{100 * summary['flight']['written'][0]['coverage_visible']:.2f}%", row.text)
+
+    def test_reloads_a_mission_that_changed_on_disk(self):
+        file = self.folder / "mission.yaml"
+        file.write_text(MISSION % "pot")
+        studio = self.start("mission.yaml")
+        area = studio.wait("#mission textarea")
+        file.write_text(MISSION % "theirs")
+        studio.wait_for(lambda: "name: \"theirs\"" in area.get_attribute("value"))
+        self.assertIn("reloaded", studio.wait("#mission").text)
+
     def test_finds_a_command_after_the_page_was_closed_and_cancels_it(self):
         shutil.copy("missions/radcliffe_camera.yaml", self.folder / "mission.yaml")
         studio = self.start("mission.yaml")
@@ -216,6 +443,7 @@ class StudioTest(unittest.TestCase):
         studio.browser.get("about:blank")
         self.assertTrue([job for job in studio.api("state")["jobs"] if job["running"]])
         studio.open()
+        studio.wait("#mission div[data-running=true]")  # the survey is followed again
         studio.click("nav button[data-step=run]")
         studio.wait(".job[data-running=true]")
         studio.wait_for(lambda: "view" in studio.wait(".job pre").text)
@@ -230,7 +458,7 @@ class StudioTest(unittest.TestCase):
         focus = lambda: studio.browser.switch_to.active_element
         def tab_to(condition):
             for _ in range(200):
-                focus().send_keys(Keys.TAB)
+                ActionChains(studio.browser).send_keys(Keys.TAB).perform()
                 if condition(focus()):
                     return focus()
             self.fail("not reached with the Tab key")
@@ -240,6 +468,15 @@ class StudioTest(unittest.TestCase):
         tab_to(lambda one: one.get_attribute("id") == "create").send_keys(Keys.ENTER)
         studio.wait("#plan-now")
         self.assertTrue(list(self.folder.glob("*.yaml")), studio.message())
+        # An object of the airspace, without the mouse.
+        tab_to(lambda one: one.get_attribute("id") == "draw-now").send_keys(Keys.ENTER)
+        studio.wait(".drawing iframe[data-ready=true]")
+        text = studio.browser.find_element(By.CSS_SELECTOR, "#mission textarea")
+        tab_to(lambda one: one.get_attribute("data-tool") == "no_fly").send_keys(Keys.ENTER)
+        tab_to(lambda one: one.text == "Enter numbers instead").send_keys(Keys.ENTER)
+        studio.wait_for(lambda: "no_fly: [{corners: [[20, 20]" in text.get_attribute("value"))
+        tab_to(lambda one: one.get_attribute("aria-label") == "no-fly 1 ceiling").send_keys(Keys.CONTROL + "a" + Keys.NULL + "33", Keys.TAB)
+        studio.wait_for(lambda: "ceiling: 33" in text.get_attribute("value"))
         for step in ("site", "mission", "results"):
             studio.click(f"nav button[data-step={step}]")
             for summary in studio.browser.find_elements(By.CSS_SELECTOR, f"#{step} summary"):
@@ -250,6 +487,44 @@ class StudioTest(unittest.TestCase):
             self.assertTrue(shown)
             for one in shown:
                 self.assertTrue(one.accessible_name, one.get_attribute("outerHTML"))
+
+    def test_has_no_accessibility_violation(self):
+        (self.folder / "mission.yaml").write_text(MISSION % "pot")
+        (self.folder / "tile.gml").write_text(tile())
+        run("plan", str(self.folder / "mission.yaml"), "--out", str(self.folder / "results/mission"), "--quiet")
+        studio = self.start("mission.yaml")
+        texts = 0
+        studio.click(studio.button("Show in 3-D"))
+        studio.wait(".drawing iframe[data-ready=true]")
+        studio.click("#check")
+        studio.wait("#mission div[data-running=false]")
+        for summary in studio.browser.find_elements(By.CSS_SELECTOR, "#mission summary"):
+            if summary.is_displayed():
+                studio.click(summary)
+        studio.wait("#variants tbody tr")
+        texts += audit(self, studio.browser, "mission")
+        studio.click("nav button[data-step=results]")
+        Select(studio.wait("#results select")).select_by_value("results/mission")
+        studio.click("#edit-views")
+        studio.wait("#views option")
+        studio.click("#verify")
+        studio.wait("#verdict[data-exit]")
+        texts += audit(self, studio.browser, "results")
+        studio.picture("17_results")
+        studio.click("nav button[data-step=files]")
+        studio.click(studio.button("tile.gml"))
+        studio.wait("#site iframe[data-objects='3']")
+        studio.click("#georeference summary")
+        texts += audit(self, studio.browser, "site")
+        for step in ("files", "run"):
+            studio.click(f"nav button[data-step={step}]")
+            texts += audit(self, studio.browser, step)
+        studio.click("nav button[data-step=files]")
+        studio.wait("#chooser").send_keys(str(self.folder / "tile.gml"))
+        studio.wait("dialog")
+        texts += audit(self, studio.browser, "question")
+        studio.click(studio.button("Keep it"))
+        print(f"{texts} texts checked{'' if AXE else '; axe-core is not installed'}")
 
     def test_fits_a_small_screen(self):
         (self.folder / "mission.yaml").write_text(MISSION % "pot")

@@ -60,6 +60,7 @@ function view_section(data, clouds, skycap) {
     skycap.panel = new Panel(stage, data, clouds);
     section.append(...skycap.panel.bars);
     skycap.panel.viewer.resize();
+    if (parent !== window) skycap.panel.editor = new Editor(skycap.panel);
   } catch (failure) {
     stage.append(element("p", { class: "notice" }, "3-D view not available: " + failure.message));
   }

@@ -171,6 +171,7 @@ class Panel {
   }
 
   click(x, y) {
+    if (this.editor && this.editor.click(x, y)) return;
     const point = this.viewer.point_at(x, y);
     if (this.measured) {
       if (point) this.measure_to(place_of(point));
@@ -275,8 +276,8 @@ class Panel {
     this.measured = is_on ? [] : null;
     this.ruler.classList.toggle("on", is_on);
     this.stage.classList.toggle("measuring", is_on);
-    this.tags.filter((tag) => tag.is_ruler).forEach((tag) => tag.label.remove());
-    this.tags = this.tags.filter((tag) => !tag.is_ruler);
+    if (this.distance_tag) this.remove_tag(this.distance_tag);
+    this.distance_tag = null;
     this.viewer.mark([]);
     this.close_card();
   }
@@ -291,18 +292,26 @@ class Panel {
         new THREE.LineBasicMaterial({ color: 0xffffff, depthTest: false }));
       marks.push(line);
       const level = Math.hypot(to.x - from.x, to.y - from.y);
-      this.add_tag(from.clone().lerp(to, 0.5), shown(from.distanceTo(to), "metres"), true);
+      this.distance_tag = this.add_tag(from.clone().lerp(to, 0.5), shown(from.distanceTo(to), "metres"), true);
       this.open_card("Distance", [list_of([["straight", shown(from.distanceTo(to), "metres")],
         ["level", shown(level, "metres")], ["height", shown(to.z - from.z, "metres")]])]);
     }
     this.viewer.mark(marks);
   }
 
-  add_tag(place, text, is_ruler) {
+  /// Adds a text at a place. `is_ruler`: shown without the ground; `is_above`: beside the place.
+  add_tag(place, text, is_ruler, is_above) {
     const label = element("div", { class: is_ruler ? "tag" : "tag north" }, text);
     this.stage.append(label);
-    this.tags.push({ place, label, is_ruler });
+    const tag = { place, label, is_ruler, is_above };
+    this.tags.push(tag);
     this.place_tags();
+    return tag;
+  }
+
+  remove_tag(tag) {
+    tag.label.remove();
+    this.tags = this.tags.filter((one) => one !== tag);
   }
 
   add_north() {
@@ -311,11 +320,11 @@ class Panel {
   }
 
   place_tags() {
-    for (const { place, label, is_ruler } of this.tags) {
+    for (const { place, label, is_ruler, is_above } of this.tags) {
       const seen = this.viewer.on_screen(place);
       const is_shown = seen.is_seen && (is_ruler || this.viewer.layers.ground.visible);
       label.style.display = is_shown ? "" : "none";
-      label.style.transform = `translate(${seen.x}px, ${seen.y}px) translate(-50%, -50%)`;
+      label.style.transform = `translate(${seen.x}px, ${seen.y}px) translate(-50%, ${is_above ? -140 : -50}%)`;
     }
   }
 

@@ -157,13 +157,15 @@ function volume_group(data, extent) {
   const highest = extent.all.max.z + 0.15 * extent.all.getSize(new THREE.Vector3()).length();
   for (const volume of (data.scene && data.scene.volumes) || []) {
     const look = volume_looks[volume.role], shape = prism(volume, ground, highest);
-    group.add(new THREE.LineSegments(shape.edges, new THREE.LineBasicMaterial({
-      color: look.colour, transparent: true, opacity: 0.8 })));
+    const parts = [new THREE.LineSegments(shape.edges, new THREE.LineBasicMaterial({
+      color: look.colour, transparent: true, opacity: 0.8 }))];
     if (look.opacity > 0) {
-      group.add(new THREE.Mesh(shape.walls, new THREE.MeshBasicMaterial({
+      parts.push(new THREE.Mesh(shape.walls, new THREE.MeshBasicMaterial({
         color: look.colour, transparent: true, opacity: look.opacity, side: THREE.DoubleSide,
         depthWrite: false })));
     }
+    for (const part of parts) part.userData.role = volume.role;
+    group.add(...parts);
   }
   return group;
 }

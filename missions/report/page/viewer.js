@@ -57,27 +57,36 @@ class Viewer {
   resize() {
     const box = this.canvas.parentElement.getBoundingClientRect();
     const width = Math.max(1, Math.round(box.width)), height = Math.max(1, Math.round(box.height));
-    this.ratio = Math.min(window.devicePixelRatio || 1, 2);
-    this.renderer.setPixelRatio(this.ratio);
-    this.renderer.setSize(width, height, false);
-    this.target.setSize(Math.round(width * this.ratio), Math.round(height * this.ratio));
+    this.size_on_screen = [width, height];
+    this.full_ratio = Math.min(window.devicePixelRatio || 1, 2);
+    this.set_ratio(this.full_ratio);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
     this.draw_soon();
   }
 
-  /// Draws as many points as are possible at an interactive rate. Draws all points after a period
-  /// without changes.
+  /// Sets the number of pixels per CSS pixel.
+  set_ratio(ratio) {
+    if (ratio === this.ratio && this.size_on_screen === this.drawn_size) return;
+    const [width, height] = this.size_on_screen;
+    Object.assign(this, { ratio, drawn_size: this.size_on_screen });
+    this.renderer.setPixelRatio(ratio);
+    this.renderer.setSize(width, height, false);
+    this.target.setSize(Math.round(width * ratio), Math.round(height * ratio));
+  }
+
+  /// Draws as many points as are possible at an interactive rate, and on slow computers with
+  /// half the resolution and without large surfaces of prior data. Draws everything after a period without changes.
   draw_soon() {
     clearTimeout(this.completion);
     if (this.is_waiting) return;
     this.is_waiting = true;
     requestAnimationFrame(() => {
       this.is_waiting = false;
-      const share = this.fluent_share();
-      this.draw(share);
+      const share = this.fluent_share(), detail = this.is_slow ? 0.5 : 1;
+      this.draw(share, detail);
       this.measure_pace();
-      if (share < 1) this.completion = setTimeout(() => requestAnimationFrame(() => this.draw()), rest);
+      if (share < 1 || detail < 1) this.completion = setTimeout(() => requestAnimationFrame(() => this.draw()), rest);
     });
   }
 
@@ -100,7 +109,10 @@ class Viewer {
         return;
       }
       gl.deleteSync(fence);
-      this.points_per_millisecond = Math.max(100, points / Math.max(4, performance.now() - start));
+      const duration = performance.now() - start, is_full = this.ratio === this.full_ratio;
+      this.points_per_millisecond = Math.max(100, points / Math.max(4, duration));
+      // A frame of half the resolution takes at least a quarter of the time.
+      if (is_full ? duration > fluent_frame : duration < fluent_frame / 8) this.is_slow = is_full;
     };
     setTimeout(look, 4);
   }
@@ -123,7 +135,12 @@ class Viewer {
     }
   }
 
-  draw(share = 1) {
+  draw(share = 1, detail = 1) {
+    this.set_ratio(detail * this.full_ratio);
+    // Without a graphics card, triangles take most of the time. Their edges remain visible.
+    const surfaces = this.layers.priors ? this.layers.priors.children.filter((part) => part.isMesh) : [];
+    const is_heavy = (mesh) => mesh.geometry.attributes.position.count > 6000;
+    for (const mesh of surfaces) mesh.visible = detail === 1 || !is_heavy(mesh);
     const { renderer, target, camera } = this, { uniforms } = this.screen.material;
     this.show_share(share);
     this.set_point_scale(camera, target.height);

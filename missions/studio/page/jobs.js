@@ -10,7 +10,7 @@ function state_text(job) {
 
 /// Adds the parts of a job to the page.
 function show_job(job) {
-  const view = { ...job, lines: [], parts: {} };
+  const view = { ...job, lines: [], parts: {}, listeners: [] };
   view.parts.state = element("span", { class: "state" });
   view.parts.cancel = button("Cancel", () => request("jobs/" + job.id + "/cancel", {}));
   view.parts.log = element("pre", { tabindex: "0", role: "log", "aria-label": "Output of command " + job.id });
@@ -36,6 +36,7 @@ function update_job(view, job) {
   view.parts.state.className = "state " + (view.running ? "" : view.exit_code === 0 ? "good" : "bad");
   view.parts.cancel.hidden = !view.running;
   view.parts.box.dataset.running = view.running;
+  view.listeners.forEach((listener) => listener(view));
 }
 
 /// Follows a job until its end.
@@ -58,6 +59,22 @@ async function run_command(command, options, on_change, draft) {
   const view = show_job(await request("jobs", { command, options, draft }));
   if (on_change) on_change(view);
   return follow_job(view, on_change);
+}
+
+/// Runs a command that is not shown in the step Run, such as a check while typing.
+async function run_quietly(command, options, draft) {
+  const job = await request("jobs", { command, options, draft });
+  const lines = [];
+  return new Promise((resolve) => {
+    const events = new EventSource("api/jobs/" + job.id + "/events");
+    events.onmessage = (event) => {
+      const state = JSON.parse(event.data);
+      (state.lines || []).forEach((line, i) => { lines[state.from + i] = line; });
+      if (state.running) return;
+      events.close();
+      resolve({ ...state, lines });
+    };
+  });
 }
 
 /// Output of a command with its state and a button to cancel it, for the page of a step.

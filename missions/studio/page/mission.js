@@ -19,32 +19,43 @@ function limits_text(schema) {
 }
 
 studio.steps.mission = {
-  path: "", text: "", version: "", values: {}, inputs: new Map(),
+  path: "", text: "", version: "", values: {}, inputs: new Map(), turn: Promise.resolve(),
   build(section) {
     this.file = select([]);
     this.file.addEventListener("change", () => this.open(this.file.value).catch((failure) => say(failure.message)));
     this.area = element("textarea", { spellcheck: "false", "aria-label": "Mission file", wrap: "off" });
-    this.area.addEventListener("change", () => this.set_text(this.area.value).catch((failure) => say(failure.message)));
+    this.area.addEventListener("change", () => {
+      const text = this.area.value;
+      this.in_turn(() => {
+        this.history.add(this.text);
+        return this.set_text(text);
+      }).catch((failure) => say(failure.message));
+    });
     this.form = element("div");
     this.problem = element("p", { class: "bad", role: "alert", hidden: true });
     this.conflict = element("div", { hidden: true, role: "alert" });
     this.is_saved = element("span", { role: "status" });
     this.output = make_output("Output of the command");
-    this.picture = frame("3-D view of the mission");
-    this.picture.hidden = true;
+    this.history = make_history(() => this.text, (text) => this.in_turn(() => this.set_text(text)));
+    this.checked = element("p", { role: "status", id: "checked" });
+    this.draw = make_draw(this);
+    this.variants = make_variants(this);
     section.append(element("h2", {}, "Mission"), element("div", { class: "fields" }, field("Mission file", this.file)),
       element("div", { class: "actions" }, button("Check", () => this.check(), { id: "check" }),
         button("Save", () => this.save(), { id: "save" }), button("Show in 3-D", () => this.view()),
         button("Plan", () => this.plan(), { class: "main", id: "plan" }),
-        button("Resume", () => this.plan(true)), button("Simulate the scan", () => this.scan()), this.is_saved),
-      this.problem, this.conflict, this.output.box, this.picture,
+        button("Resume", () => this.plan(true)), button("Simulate the scan", () => this.scan()),
+        this.history.undo, this.history.redo, this.is_saved),
+      this.problem, this.conflict, this.checked, this.output.box, this.draw.box, this.variants.box,
       element("div", { class: "columns" }, this.form, this.area));
-    addEventListener("focus", () => this.compare_with_disk().catch(() => {}));
+    // The file may be changed by other programs at any time.
+    setInterval(() => { if (!document.hidden) this.compare_with_disk().catch(() => {}); }, 2000);
     addEventListener("beforeunload", (event) => { if (this.is_changed()) event.preventDefault(); });
   },
   refresh() {
     fill(this.file, files_of("mission").map((file) => file.path), "choose a mission");
     if (this.path) this.file.value = this.path;
+    this.variants.refresh().catch((failure) => say(failure.message));
   },
   is_changed() { return this.path !== "" && this.text !== this.saved; },
   async open(path) {
@@ -55,10 +66,23 @@ studio.steps.mission = {
     }
     this.show(await request("mission?path=" + encodeURIComponent(path)));
     this.file.value = path;
+    this.follow_running_plan();
+  },
+  /// Shows a plan of this mission that was started before the page was opened.
+  follow_running_plan() {
+    for (const job of jobs.values()) {
+      const [, mission, folder] = /^skycap plan (\S+) --out=(\S+)/.exec(job.title) || [];
+      if (!job.running || mission !== this.path || job.listeners.length) continue;
+      job.listeners.push(this.output.show, this.follow_survey(folder));
+      this.output.show(job);
+    }
   },
   show(mission) {
+    if (mission.path !== this.path) this.draw.box.hidden = true;
     Object.assign(this, { path: mission.path, text: mission.text, saved: mission.text, version: mission.version });
     this.conflict.hidden = true;
+    this.history.clear();
+    this.draw.show_views([]);
     this.show_text(mission);
   },
   show_text(mission) {
@@ -68,6 +92,8 @@ studio.steps.mission = {
     this.area.value = this.text;
     for (const [key, input] of this.inputs) if (input !== document.activeElement) input.value = this.values[key] || "";
     this.is_saved.textContent = this.is_changed() ? "changed, not saved" : "saved";
+    this.draw.refresh();
+    if (this.text !== this.checked_text) this.check_soon();
   },
   /// Reads a text that was edited: the values of the form follow it.
   async set_text(text) {
@@ -78,10 +104,47 @@ studio.steps.mission = {
       this.show_text({ error: failure.message });
     }
   },
-  async set(key, value) {
-    const answer = await request("edit", { text: this.text, key, value });
+  /// Runs an action that reads and changes the mission after all earlier ones have ended.
+  in_turn(action) {
+    const result = this.turn.then(action);
+    this.turn = result.catch(() => {});
+    return result;
+  },
+  set(key, value) { return this.in_turn(() => this.set_all([[key, value]])); },
+  /// Sets several keys in one step of the history.
+  async set_all(pairs) {
+    this.require_mission();
+    let answer = { text: this.text, values: this.values };
+    for (const [key, value] of pairs) answer = await request("edit", { text: answer.text, key, value });
+    if (answer.text === this.text) return;
+    this.history.add(this.text);
     this.text = answer.text;
     this.show_text(answer);
+  },
+  /// Checks a changed text with the program after a pause in typing, one check at a time.
+  check_soon() {
+    clearTimeout(this.timer);
+    if (!this.is_changed()) {
+      this.checked.textContent = "";
+      return;
+    }
+    this.timer = setTimeout(() => this.check_now().catch((failure) => { this.checked.textContent = failure.message; }), 700);
+  },
+  async check_now() {
+    if (this.is_checking) return this.check_soon();
+    this.is_checking = true;
+    const text = this.text;
+    try {
+      const job = await run_quietly("check", { mission: this.path }, text);
+      if (text !== this.text) return;
+      this.checked_text = text;
+      const problem = job.lines.find((line) => line.includes("error")) || job.lines.at(-1) || "";
+      this.checked.textContent = job.exit_code === 0 ? "Check passed." : problem;
+      this.checked.className = job.exit_code === 0 ? "good" : "bad";
+    } finally {
+      this.is_checking = false;
+      if (text !== this.text) this.check_soon();
+    }
   },
   make_input(key, schema) {
     const words = schema.type === "boolean" ? ["true", "false"] : schema.enum;
@@ -140,15 +203,22 @@ studio.steps.mission = {
       element("pre", { tabindex: "0", "aria-label": "File on disk" }, disk.text || "(the file does not exist any more)"),
       element("div", { class: "actions" }, button("Load the file on disk", () => this.show(disk)),
         button("Keep this text and replace the file", () => { this.version = disk.version; return this.save(); })));
+    this.conflict.dataset.version = disk.version;
     this.conflict.hidden = false;
     return false;
   },
   async compare_with_disk() {
     if (!this.path) return;
-    const disk = await request("mission?path=" + encodeURIComponent(this.path));
-    if (disk.version === this.version) return;
-    if (this.is_changed()) this.show_conflict(disk);
-    else this.show(disk);
+    const { path, version } = this;
+    const disk = await request("mission?path=" + encodeURIComponent(path) + "&version=" + version);
+    if (disk.version === version || path !== this.path || version !== this.version) return;
+    if (disk.version === this.conflict.dataset.version && !this.conflict.hidden) return;
+    if (this.is_changed()) {
+      this.show_conflict(disk);
+    } else {
+      this.show(disk);
+      this.is_saved.textContent = "reloaded, because the file has changed on disk";
+    }
   },
   async save_if_changed() {
     this.require_mission();
@@ -158,19 +228,53 @@ studio.steps.mission = {
   async view() {
     await this.save_if_changed();
     const page = this.path.replace(/\.ya?ml$/, ".html");
-    const job = await run_command("view", { what: this.path, "--out": page }, this.output.show);
-    if (job.exit_code === 0) show_in(this.picture, page);
+    const job = await run_command("view", { what: this.path, "--out": page });
+    if (job.exit_code !== 0) {
+      this.output.show(job);
+      return;
+    }
+    this.draw.box.hidden = false;
+    this.draw.stage.show(page);
   },
   results_folder() { return "results/" + stem_of(this.path); },
   async plan(resumes) {
     await this.save_if_changed();
     const folder = this.results_folder();
-    const job = await run_command("plan", { mission: this.path, "--out": folder, "--resume": !!resumes }, this.output.show);
+    const growth = this.follow_survey(folder);
+    const job = await run_command("plan", { mission: this.path, "--out": folder, "--resume": !!resumes }, (view) => {
+      this.output.show(view);
+      growth(view);
+    });
     await refresh_files();
     if (job.exit_code !== 2 && files_of("package").some((file) => file.path === folder)) {
       await studio.steps.results.open(folder);
       if (job.exit_code === 0) go_to("results");
     }
+  },
+  /// Shows the views of a running survey in the 3-D view. Returns the function for its job's changes.
+  follow_survey(folder) {
+    const views = [];
+    let is_asking = false, is_viewed = !this.draw.box.hidden, lines = 0;
+    return async (job) => {
+      const is_view = (line) => / view \d+ of at most /.test(line);
+      const is_new = job.lines.length > lines && job.lines.slice(lines).some(is_view);
+      if (!is_new || is_asking) return;
+      is_asking = true;
+      lines = job.lines.length;
+      try {
+        if (!is_viewed) {
+          is_viewed = true;
+          await this.view();
+        }
+        const answer = await request("progress?path=" + encodeURIComponent(folder) + "&from=" + views.length);
+        if (answer.from === views.length) views.push(...answer.views);
+        this.draw.show_views(views);
+      } catch (failure) {
+        say(failure.message);
+      } finally {
+        is_asking = false;
+      }
+    };
   },
   async scan() {
     await this.save_if_changed();

@@ -20,11 +20,12 @@ function say(text) {
   line.hidden = !text;
 }
 
-/// Requests JSON from the studio. Throws an Error with the program's message. A conflict (409) is
+/// Requests JSON from the studio. The content is JSON, or a piece of a file. Throws an Error with the program's message. A conflict (409) is
 /// returned.
 async function request(path, content) {
-  const options = content === undefined ? {} : { method: "POST", body: JSON.stringify(content),
-    headers: { "Content-Type": "application/json" } };
+  const is_piece = content instanceof Blob;
+  const options = content === undefined ? {} : { method: "POST", body: is_piece ? content : JSON.stringify(content),
+    headers: { "Content-Type": is_piece ? "application/octet-stream" : "application/json" } };
   let answer;
   try {
     answer = await fetch("api/" + path, options);

@@ -8,14 +8,16 @@ studio.steps.results = {
   build(section) {
     this.folder = select([]);
     this.folder.addEventListener("change", () => this.open(this.folder.value).catch((failure) => say(failure.message)));
-    this.report = frame("Report");
-    this.report.hidden = true;
+    this.stage = make_stage("Report", { moved: (...change) => this.editor.moved(...change),
+      selected: (id) => { if (this.editor.views[id]) this.editor.select(Number(id)); } });
+    this.editor = make_view_editor(this.stage, () => this.folder.value);
     this.pages = element("div", { class: "actions" });
     this.rows = element("tbody");
     this.format = select(formats, { id: "format" });
     this.output = make_output("Output of skycap export");
     section.append(element("h2", {}, "Results"), element("div", { class: "fields" }, field("Results", this.folder)),
-      this.pages, this.report, element("h3", {}, "Export for another vehicle or program"),
+      this.pages, element("div", { class: "drawing", "data-open": "false" }, this.stage.node, this.editor.box),
+      element("h3", {}, "Export for another vehicle or program"),
       element("div", { class: "fields" }, field("Format", this.format)),
       element("div", { class: "actions" }, button("Export", () => this.export_route(), { id: "export" })), this.output.box,
       element("h3", {}, "Files"), element("table", {}, element("thead", {}, element("tr", {},
@@ -25,18 +27,32 @@ studio.steps.results = {
   async open(path) {
     if (!path) return;
     this.folder.value = path;
+    this.close_editor();
     const { files } = await request("package?path=" + encodeURIComponent(path));
     const pages = files.map((file) => file.path).filter((name) => name.endsWith(".html"));
     const names = { "report.html": "Report", "field_sheet.html": "Field sheet", "scan.html": "Scan report" };
-    this.pages.replaceChildren(...pages.map((name) => button(names[name] || name, () => show_in(this.report, path + "/" + name))),
+    this.pages.replaceChildren(...pages.map((name) => button(names[name] || name, () => {
+      this.close_editor();
+      this.stage.show(path + "/" + name);
+    })),
       ...pages.map((name) => element("a", { class: "button", href: file_address(path + "/" + name), target: "_blank", rel: "noopener" },
-        (names[name] || name) + " in a new tab")));
+        (names[name] || name) + " in a new tab")),
+      ...(pages.includes("report.html") && files.some((file) => file.path === "summary.json") ? [button("Edit the views", () => this.edit(), { id: "edit-views" })] : []));
     const main = ["report.html", "scan.html", ...pages].find((name) => pages.includes(name));
-    if (main) show_in(this.report, path + "/" + main);
+    if (main) this.stage.show(path + "/" + main);
     this.rows.replaceChildren(...files.map((file) => element("tr", {}, element("td", {}, file.path),
       element("td", { class: "number" }, bytes_text(file.bytes)),
       element("td", {}, element("a", { href: file_address(path + "/" + file.path, "?download=1"), download: file.path.split("/").pop(),
         "data-file": file.path }, "Download ", file.path)))));
+  },
+  async edit() {
+    this.stage.show(this.folder.value + "/report.html");
+    await this.editor.open();
+    this.stage.node.parentElement.dataset.open = "true";
+  },
+  close_editor() {
+    this.editor.close();
+    this.stage.node.parentElement.dataset.open = "false";
   },
   async export_route() {
     if (!this.folder.value) throw new Error("No results are open. Choose results, or plan a mission first.");

@@ -165,6 +165,7 @@ studio.steps.site = {
     if (!this.is_model()) show_in(this.picture, page);
     else if (!is_photo) show_in(this.picture, page);
     this.next.replaceChildren(button("Edit the mission", () => go_to("mission")),
+      button("Draw on the site", () => { go_to("mission"); return studio.steps.mission.view(); }, { id: "draw-now" }),
       button("Plan", () => { go_to("mission"); return studio.steps.mission.plan(); }, { class: "main", id: "plan-now" }));
     this.next.hidden = false;
   },

@@ -56,6 +56,31 @@ double ellipsoid_height(const Vector3d& position) {
   return LocalFrame(site.origin).to_geodetic(position).height;
 }
 
+TEST(ImportedRoute, ReadsWaypointTablesInTheMissionFrameWithoutAGeoreference) {
+  const TemporaryFolder folder;
+  const auto read = [&](const std::string& rows) {
+    const std::string text = "x,y,z,heading_deg,gimbal_pitch_deg,photos\n" + rows;
+    return read_imported_route(folder.file("route.csv", text), FlightFacts{}, false,
+                               TrackHeights::automatic);
+  };
+  const ImportedRoute route = read("1.5,-2,30,270,-45,1\r\n\n4,5,6,0,0,0\n");
+  ASSERT_EQ(route.points.size(), 2U);
+  EXPECT_FALSE(route.is_track);
+  EXPECT_EQ(route.points[0].position, Vector3d(1.5, -2, 30));
+  EXPECT_EQ(route.points[0].yaw_deg, 270);
+  EXPECT_EQ(route.points[0].pitch_deg, -45);
+  EXPECT_EQ(route.points[0].captures, 1);
+  EXPECT_EQ(route.points[1].captures, 0);
+  EXPECT_EQ(route.points[1].item, "line 4");
+  for (const char* row : {"1,2,3,4,5", "1,2,3,4,5,6,7", "1,2,x,0,0,0", "nan,2,3,0,0,0",
+                          "1,2,3,400,0,0", "1,2,3,0,0,0.5", "1,2,3,0,0,-1", "1e9,2,3,0,0,0"}) {
+    EXPECT_THAT(thrown_message([&] { read(std::string("1,2,3,0,0,1\n") + row + "\n"); }),
+                HasSubstr("line 3"))
+        << row;
+  }
+  EXPECT_THROW(read(""), Error);
+}
+
 TEST(ImportedRoute, ReadsHeadingsAndPitchesOfWaypointTables) {
   const Vector3d first(10, 20, 31), second(30, -10, 41);
   const double above_pad = ellipsoid_height(first) - ellipsoid_height(pad);

@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include "geometry/error.h"
+#include "geometry/io/record_log.h"
 #include "missions/studio/command_table.h"
 #include "missions/studio/mission_edit.h"
 #include "missions/studio/service.h"
@@ -120,7 +121,8 @@ TEST_F(Studio, ServesThePageWithItsTokenOnly) {
   std::string wrong = page();
   wrong.back() = wrong.back() == '0' ? '1' : '0';
   for (const std::string& path : {std::string("/"), std::string("/api/state"), wrong + "/",
-                                  page().substr(0, 20) + "/", page() + "0/", "//" + page()}) {
+                                  page().substr(0, 20) + "/", page() + "0/", "//" + page(),
+                                  "\xff" + page().substr(1) + "/", "?" + page().substr(1) + "/"}) {
     EXPECT_THAT(get(path), forbidden) << path;
   }
   EXPECT_NE(service_->guard().page_token(), service_->guard().file_token());
@@ -240,6 +242,119 @@ TEST_F(Studio, SavesOnlyTheVersionThatWasRead) {
   EXPECT_THROW(folder.save(".hidden.yaml", "x", ""), Error);
 }
 
+TEST_F(Studio, ListsResultsAndLiveSurveys) {
+  for (const char* name : {"plan/summary.json", "live/live.journal", "other/notes.txt"}) {
+    fs::create_directories((folder_.path() / "work" / name).parent_path());
+    write("work/" + std::string(name), "{}");
+  }
+  std::vector<std::string> packages;
+  for (const ListedFile& file : service_->folder().list().files) {
+    if (file.kind == "package") packages.push_back(file.path);
+  }
+  EXPECT_THAT(packages, ElementsAre("live", "plan"));
+}
+
+TEST_F(Studio, ReportsTheViewsOfARunningSurvey) {
+  fs::create_directories(folder_.path() / "work/plan");
+  EXPECT_THAT(get(page() + "/api/progress?path=plan"), AllOf(ok, HasSubstr("\"views\":[]")));
+  {
+    geometry::RecordLog log(folder_.path() / "work/plan/survey.journal");
+    log.append("{}");
+    for (const char* x : {"1.5", "2.5"}) {
+      log.append(std::string(R"({"position": [)") + x +
+                 R"(, 0, 9], "direction": [1, 0, 0], "returns": 5, "points": 4, "next": {}})");
+    }
+  }
+  EXPECT_THAT(get(page() + "/api/progress?path=plan"), AllOf(HasSubstr("1.5"), HasSubstr("2.5")));
+  EXPECT_THAT(get(page() + "/api/progress?path=plan&from=1"),
+              AllOf(Not(HasSubstr("1.5")), HasSubstr("2.5"), HasSubstr("\"from\":1")));
+  EXPECT_THAT(get(page() + "/api/progress?path=missing"), StartsWith("HTTP/1.1 404"));
+  EXPECT_THAT(get(page() + "/api/progress?path=../work/plan"), StartsWith("HTTP/1.1 400"));
+  std::string text = read("work/plan/survey.journal");
+  text[0] = text[0] == '0' ? '1' : '0';  // a checksum
+  write("work/plan/survey.journal", text);
+  EXPECT_THAT(get(page() + "/api/progress?path=plan"), StartsWith("HTTP/1.1 400"));
+}
+
+TEST_F(Studio, SendsAMissionOnlyIfItHasChanged) {
+  const std::string version = service_->folder().read("house.yaml").version;
+  const std::string path = page() + "/api/mission?path=house.yaml&version=";
+  EXPECT_THAT(get(path + version), AllOf(ok, Not(HasSubstr("text"))));
+  EXPECT_THAT(get(path), AllOf(ok, HasSubstr("max_views: 3")));
+}
+
+TEST_F(Studio, ReceivesAFileInPieces) {
+  const auto piece = [&](const std::string& at, const std::string& bytes) {
+    return post(page() + "/api/uploads/" + at, bytes,
+                "Origin: http://" + host() + "\r\nContent-Type: application/octet-stream\r\n");
+  };
+  const auto begin = [&](const char* name, const char* replace) {
+    return post("/api/uploads", std::string(R"({"name": ")") + name +
+                                    R"(", "bytes": 8, "replace": )" + replace + "}");
+  };
+  const std::string bytes("a\0b\xff\n12", 7);
+  EXPECT_THAT(begin("cloud.las", "false"),
+              AllOf(StartsWith("HTTP/1.1 201"), HasSubstr("{\"id\":1}")));
+  EXPECT_THAT(piece("1?offset=0", bytes), ok);
+  EXPECT_THAT(post("/api/uploads/1/end", "{}"),
+              AllOf(StartsWith("HTTP/1.1 400"), HasSubstr("1 bytes")));
+  EXPECT_FALSE(fs::exists(folder_.path() / "work/cloud.las"));
+  EXPECT_THAT(piece("1?offset=0", "3"), StartsWith("HTTP/1.1 400"));   // repeated
+  EXPECT_THAT(piece("1?offset=7", "34"), StartsWith("HTTP/1.1 400"));  // too long
+  EXPECT_THAT(piece("1?offset=7", "3"), ok);
+  EXPECT_THAT(post("/api/uploads/1/end", "{}"), AllOf(ok, HasSubstr("cloud.las")));
+  EXPECT_EQ(read("work/cloud.las"), bytes + "3");
+
+  // An existing file is replaced on request only.
+  EXPECT_THAT(begin("cloud.las", "false"),
+              AllOf(StartsWith("HTTP/1.1 409"), HasSubstr("conflict")));
+  EXPECT_THAT(begin("cloud.las", "true"), StartsWith("HTTP/1.1 201"));
+  EXPECT_THAT(begin("cloud.las", "true"), StartsWith("HTTP/1.1 400"));  // sent by another page
+  EXPECT_THAT(piece("2?offset=0", "replaced"), ok);
+  EXPECT_EQ(read("work/cloud.las"), bytes + "3");
+  EXPECT_THAT(post("/api/uploads/2/end", "{}"), ok);
+  EXPECT_EQ(read("work/cloud.las"), "replaced");
+
+  // A file that was created meanwhile is not replaced either.
+  EXPECT_THAT(begin("tile.gml", "false"), StartsWith("HTTP/1.1 201"));
+  EXPECT_THAT(piece("3?offset=0", "12345678"), ok);
+  write("work/tile.gml", "theirs");
+  EXPECT_THAT(post("/api/uploads/3/end", "{}"), StartsWith("HTTP/1.1 409"));
+  EXPECT_EQ(read("work/tile.gml"), "theirs");
+
+  EXPECT_THAT(begin("mesh.ply", "false"), StartsWith("HTTP/1.1 201"));
+  EXPECT_THAT(post("/api/uploads/4/cancel", "{}"), ok);
+  EXPECT_THAT(piece("4?offset=0", "12345678"), StartsWith("HTTP/1.1 400"));
+  for (const auto& entry : fs::directory_iterator(folder_.path() / "work")) {
+    EXPECT_THAT(entry.path().filename().string(), Not(StartsWith("."))) << "temporary file";
+  }
+}
+
+TEST_F(Studio, RejectsUploadsUnderOtherNamesAndWithoutThePage) {
+  for (const char* name : {"../x.las", "a/x.las", "a\\\\x.las", ".x.las", "x.html", "x.so", "x.py",
+                           "x", "", "/x.las", "results", "x.las\\u0000.gml", "..", "link.yaml"}) {
+    EXPECT_THAT(post("/api/uploads",
+                     std::string(R"({"name": ")") + name + R"(", "bytes": 1, "replace": true})"),
+                StartsWith("HTTP/1.1 400"))
+        << name;
+  }
+  for (const char* bytes : {"5000000000", "-1", "1e30", "\"1\""}) {
+    EXPECT_THAT(post("/api/uploads",
+                     std::string(R"({"name": "x.las", "replace": false, "bytes": )") + bytes + "}"),
+                StartsWith("HTTP/1.1 400"))
+        << bytes;
+  }
+  const std::string binary = "Content-Type: application/octet-stream\r\n";
+  const std::string path = page() + "/api/uploads/1?offset=0";
+  EXPECT_THAT(post(path, "x", binary), forbidden);  // without Origin
+  EXPECT_THAT(post(path, "x", own_headers()), StartsWith("HTTP/1.1 415"));
+  EXPECT_THAT(
+      post(page() + "/api/save?offset=0", "{}", "Origin: http://" + host() + "\r\n" + binary),
+      StartsWith("HTTP/1.1 415"));
+  EXPECT_EQ(read("secret.yaml"), "name: secret\n");
+  EXPECT_TRUE(serves());
+}
+
 TEST_F(Studio, RunsACommandThatASecondPageFinds) {
   const std::string started =
       post("/api/jobs", R"({"command": "presets", "options": {"--json": true}})");
@@ -259,6 +374,11 @@ TEST(CommandTable, PermitsOnlyKnownOptionsAndFilesOfTheFolder) {
   EXPECT_THROW(make_arguments("model", {}, folder), Error);
   EXPECT_THROW(make_arguments("plan", {}, folder), Error);
   EXPECT_THROW(make_arguments("plan", {{"mission", {"a"}}, {"--set", {"a=b"}}}, folder), Error);
+  EXPECT_THAT(
+      make_arguments("plan", {{"mission", {"a"}}, {"--set", {"flight.views=replanned"}}}, folder),
+      ElementsAre("plan", "a", "--set=flight.views=replanned"));
+  EXPECT_THROW(make_arguments("plan", {{"mission", {"a"}}, {"--planner", {"x.py"}}}, folder),
+               Error);
   EXPECT_THROW(make_arguments("plan", {{"mission", {"../a"}}}, folder), Error);
   EXPECT_THROW(make_arguments("init", {{"target", {"a"}}, {"--sensor", {"/etc/a.yaml"}}}, folder),
                Error);
@@ -287,14 +407,54 @@ TEST(MissionEdit, PreservesCommentsAndLayout) {
             replaced("vehicle\n  vehicle", "vehicle\n  clearance: 2\n  vehicle"));
   EXPECT_EQ(with_key(text, "site.max_height", "50"), text + "site:\n  max_height: 50\n");
   EXPECT_EQ(with_key(text, "site.max_height", ""), text);
+  const std::string box = with_key(text, "planner.scene_box.min", "[1, 2, 3]");
+  EXPECT_EQ(box, text + "planner:\n  scene_box:\n    min: [1, 2, 3]\n");
+  EXPECT_EQ(with_key(box, "planner.scene_box.min", ""), text + "planner:\n");
   EXPECT_EQ(list_values(text, "x").at("flight.takeoff"), "[1, 2, 3]");
+}
+
+TEST(MissionEdit, ReplacesValuesOfSeveralLinesAndPreservesTheirComments) {
+  const std::string text =
+      "site:\n"
+      "  no_fly:  # of the town\n"
+      "    - corners: [[0, 0], [4, 0], [4, 4]]  # school\n"
+      "      floor: 0\n"
+      "    # the pond\n"
+      "    - {corners: [[9, 9], [9, 12], [12, 9]], name: 'it''s'}\n"
+      "  # as in the permit\n"
+      "  geofence: [[-80, -80],  # south\n"
+      "             [80, -80], [80, 80]]  # end\n"
+      "flight:\n"
+      "  rally:\n"
+      "  - [1, 2, 3]\n"
+      "  - [4, 5, 6]\n"
+      "\n"
+      "# views\n"
+      "limits: {max_views: 3}\n";
+  const auto values = list_values(text, "x");
+  EXPECT_EQ(values.at("site.no_fly"),
+            "[{corners: [[0, 0], [4, 0], [4, 4]], floor: 0}, "
+            "{corners: [[9, 9], [9, 12], [12, 9]], name: \"it's\"}]");
+  EXPECT_EQ(values.at("flight.rally"), "[[1, 2, 3], [4, 5, 6]]");
+  EXPECT_THAT(with_key(text, "site.no_fly", "[{corners: [[0, 0], [1, 0], [0, 1]]}]"),
+              StartsWith("site:\n  # school\n  # the pond\n"
+                         "  no_fly: [{corners: [[0, 0], [1, 0], [0, 1]]}]  # of the town\n"
+                         "  # as in the permit\n  geofence: [[-80"));
+  EXPECT_THAT(with_key(text, "site.geofence", "[[0, 0], [1, 0], [0, 1]]"),
+              HasSubstr("permit\n  # south\n  geofence: [[0, 0], [1, 0], [0, 1]]  # end\nflight:"));
+  EXPECT_THAT(with_key(text, "flight.rally", "[[7, 8, 9]]"),
+              HasSubstr("flight:\n  rally: [[7, 8, 9]]\n\n# views\nlimits"));
+  EXPECT_THAT(with_key(text, "site.no_fly", ""), StartsWith("site:\n  # as in the permit\n"));
+  // Setting each value to what it is changes no value.
+  for (const auto& [key, value] : values) {
+    EXPECT_EQ(list_values(with_key(text, key, value), "x"), values) << key;
+  }
 }
 
 TEST(MissionEdit, RejectsWhatWouldChangeOtherKeys) {
   for (const char* value : {"1\nname: x", "1, max_distance: 2", "{", "a: b", "# c", "1} x: {"}) {
     EXPECT_THROW(with_key("limits: {max_views: 12}\n", "limits.max_views", value), Error) << value;
   }
-  EXPECT_THROW(with_key("flight:\n  takeoff:\n    - 1\n    - 2\n", "flight.takeoff", "[3]"), Error);
   EXPECT_THROW(with_key("{", "name", "x"), Error);
 }
 
