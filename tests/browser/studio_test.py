@@ -358,7 +358,8 @@ class StudioTest(unittest.TestCase):
     def test_edits_the_views_of_a_plan_and_verifies_the_route(self):
         shutil.copy("missions/radcliffe_camera.yaml", self.folder / "mission.yaml")
         run("plan", str(self.folder / "mission.yaml"), "--planner", "skycap", "--out", str(self.folder / "plan"),
-            "--quiet", "--set", "evaluation.attainable_views=0", "--set", "evaluation.samples=5000")
+            "--quiet", "--set", "evaluation.attainable_views=0", "--set", "evaluation.samples=5000",
+            "--set", "planner.goal=views", "--set", "flight.views=survey")
         studio = self.start("")
         studio.click(studio.button("plan"))
         studio.click("#edit-views")

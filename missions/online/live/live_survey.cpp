@@ -27,13 +27,13 @@ namespace fs = std::filesystem;
 using Eigen::Vector3d;
 
 constexpr const char* journal_name = "live.journal";
+constexpr const char* scans_name = "scans";
 
 /// Returns whether the first record of a journal is from a version with the same format.
 bool has_current_format(const std::string& identity) {
   const auto json = nlohmann::json::parse(identity, nullptr, false);
   return json.is_object() && json.contains("format") && json["format"] == support::journal_format;
 }
-constexpr const char* scans_name = "scans";
 
 fs::path made_folder(const fs::path& folder) {
   std::error_code failure;
@@ -70,7 +70,10 @@ struct LiveSurvey::Impl {
     const std::string text = support::identity_text(
         identity, {{"format", support::journal_format}, {"surface", "live"}});
     // Without a scan there is nothing to resume, and the mission may have been corrected.
-    if (log.records().size() == 1 && has_current_format(log.records().front())) log.clear();
+    if (log.records().size() == 1 && log.records().front() != text &&
+        has_current_format(log.records().front())) {
+      log.clear();
+    }
     if (log.records().empty()) {
       log.append(text);
     } else {

@@ -73,8 +73,10 @@ studio.steps.mission = {
     for (const job of jobs.values()) {
       const [, mission, folder] = /^skycap plan (\S+) --out=(\S+)/.exec(job.title) || [];
       if (!job.running || mission !== this.path || job.listeners.length) continue;
-      job.listeners.push(this.output.show, this.follow_survey(folder));
+      const follow = this.follow_survey(folder);
+      job.listeners.push(this.output.show, follow);
       this.output.show(job);
+      follow(job);
     }
   },
   show(mission) {
@@ -251,29 +253,31 @@ studio.steps.mission = {
       if (job.exit_code === 0) go_to("results");
     }
   },
-  /// Shows the views of a running survey in the 3-D view. Returns the function for its job's changes.
+  /// Shows the views of a running survey in the 3-D view, every second. Returns the function for its job's changes.
   follow_survey(folder) {
-    const views = [];
-    let is_asking = false, is_viewed = !this.draw.box.hidden, lines = 0;
-    return async (job) => {
-      const is_view = (line) => / view \d+ of at most /.test(line);
-      const is_new = job.lines.length > lines && job.lines.slice(lines).some(is_view);
-      if (!is_new || is_asking) return;
+    const views = [], { path } = this;
+    let is_asking = false, is_viewed = !this.draw.box.hidden, timer = null;
+    const ask = async () => {
+      if (is_asking || this.path !== path) return;
       is_asking = true;
-      lines = job.lines.length;
       try {
+        const answer = await request("progress?path=" + encodeURIComponent(folder) + "&from=" + views.length);
+        if (answer.views.length === 0) return;  // not begun, or ended
         if (!is_viewed) {
           is_viewed = true;
           await this.view();
         }
-        const answer = await request("progress?path=" + encodeURIComponent(folder) + "&from=" + views.length);
-        if (answer.from === views.length) views.push(...answer.views);
+        views.push(...answer.views);
         this.draw.show_views(views);
       } catch (failure) {
         say(failure.message);
       } finally {
         is_asking = false;
       }
+    };
+    return (job) => {
+      if (job.running && timer === null) timer = setInterval(ask, 1000);
+      if (!job.running) clearInterval(timer);
     };
   },
   async scan() {

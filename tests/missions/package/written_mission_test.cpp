@@ -35,7 +35,7 @@ const std::string near_pad =
     "sensor: {width: 160, height: 120, max_range: 100, noise: {sigma: 0.02}}\n"
     "planner: {name: skycap, density: 1, resolution_radius: 1.2, spacing: 0.3, view_distance: 16,\n"
     "          scene_box: {min: [-14, -11, 0.3], max: [14, 11, 13]}, min_gain: 0.02}\n"
-    "flight: {vehicle: mavic_3e, position_error: 0.1, takeoff: [-30, 0, 0],\n"
+    "flight: {vehicle: mavic_3e, position_error: 0.1, takeoff: [-30, 0, 0], views: survey,\n"
     "         unknown_box: {min: [-14, -11, 0], max: [14, 11, 13]}}\n"
     "site: {latitude_deg: 47.1, longitude_deg: 8.2, ellipsoid_height: 480,\n"
     "       geoid_undulation: 48}\n"

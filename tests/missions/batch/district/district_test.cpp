@@ -61,8 +61,8 @@ std::string town(const std::vector<Vector3d>& positions) {
 const std::vector<Vector3d> positions{{0, 0, 0}, {10, 0, 0}, {60, 0, 0}, {60, 30, 0}};
 
 constexpr const char* few_views =
-    "set: {limits.max_views: 3, evaluation: {samples: 2000, visible_directions: 20, "
-    "attainable_views: 0}}\n";
+    "set: {limits.max_views: 3, flight.views: survey, evaluation: {samples: 2000, "
+    "visible_directions: 20, attainable_views: 0}}\n";
 
 class District : public testing::Test {
  protected:
