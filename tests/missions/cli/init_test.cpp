@@ -181,8 +181,9 @@ TEST(Presets, ListsVehiclesAndSensorsWithPlausibleValues) {
   EXPECT_THAT(text,
               HasSubstr("\n  mavic_3e_wide           17.3 x 13 mm   5280 x 3956 px  12.29 mm   "
                         "2.67 mm    0.7 s  mechanical\n"));
-  EXPECT_THAT(text,
-              HasSubstr("intel_d435           depth camera   0.168 to 10 m  0.3 to 3 m  848 x 480 px"));
+  EXPECT_THAT(
+      text,
+      HasSubstr("intel_d435           depth camera   0.168 to 10 m  0.3 to 3 m  848 x 480 px"));
 }
 
 std::string run_in(const std::string& shell, const std::string& script) {
