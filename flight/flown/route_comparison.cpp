@@ -373,9 +373,10 @@ class Comparison {
   std::pair<std::size_t, std::size_t> find_samples(const std::vector<LegComparison>& legs,
                                                    std::size_t leg) const {
     const auto leg_of = [&](std::uint32_t piece) { return pieces_[piece].leg; };
-    const auto range = std::ranges::equal_range(assigned_, leg, {}, leg_of);
-    auto first = static_cast<std::size_t>(range.begin() - assigned_.begin());
-    std::size_t last = first + range.size() - 1;
+    const auto begin = std::ranges::lower_bound(assigned_, leg, {}, leg_of);
+    const auto end = std::ranges::upper_bound(assigned_, leg, {}, leg_of);
+    auto first = static_cast<std::size_t>(begin - assigned_.begin());
+    auto last = static_cast<std::size_t>(end - assigned_.begin()) - 1;
     const std::vector<Vector3d>& points = plan_.legs[leg].points;
     if (leg > 0 && !legs[leg - 1].is_flown) first = find_nearest(first, last, points.front());
     if (leg + 1 < legs.size() && !legs[leg + 1].is_flown) {

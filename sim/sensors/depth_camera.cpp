@@ -80,7 +80,7 @@ void store_depths(const RayPacket& packet, const Limits& limits, std::ptrdiff_t 
   for (std::ptrdiff_t row = 0; row < packet_rows; ++row) {
     const auto hit = four<FourFloats>(packet.distance + row * packet_columns);
     // A camera that touches a surface hits it at a distance of +0 or -0. This is not a return.
-    const FourFloats depth = (hit >= limits.min_depth) & (hit > 0.0F) ? hit : none;
+    const FourFloats depth = ((hit >= limits.min_depth) & (hit > 0.0F)) ? hit : none;
     std::memcpy(depths + row * stride, &depth, sizeof depth);
   }
   if (limits.min_cosine <= 0.0F) return;
