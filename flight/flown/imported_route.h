@@ -39,8 +39,9 @@ struct ImportedRoute {
 /// Reads a route or a track. These kinds are supported:
 ///
 /// - .csv: waypoint table with the columns latitude, longitude and a height; with a column of times
-///   it is a track, see read_flown_log()
-/// - .kml: LineString or gx:Track; .csv with x,y,z,heading_deg,gimbal_pitch_deg,photos [m, degrees]
+///   it is a track, see read_flown_log(). Or one with the columns x, y, z [m, mission frame],
+///   heading_deg, gimbal_pitch_deg and photos
+/// - .kml: LineString or gx:Track
 /// - .plan, .waypoints, .kmz, .litchi.csv, .geojson: route files, see interpret_file()
 /// - logs and tracks of read_flown_log()
 ///

@@ -185,7 +185,7 @@ void derive_pattern_order(MissionDocument& document) {
   }
 }
 
-/// Selects the survey's views if there is no choice: other planners keep no surface model, an order
+/// Selects the survey's views if there is no choice: other planners have no surface model, an order
 /// belongs to its views, the time of a fleet is not that of one vehicle, and a flying scanner
 /// measures on the survey's own paths.
 void derive_mission_views(MissionDocument& document) {

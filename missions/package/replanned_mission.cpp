@@ -173,9 +173,9 @@ std::string replanned_text(const ReplannedMission& mission) {
   const package::MissionChoice& choice = mission.choice;
   std::string text = fmt::format("  written   {} views: {}\n",
                                  choice.is_replanned ? "replanned" : "survey", choice.reason);
-  text += "  survey    views: " + variant_text(choice.survey) + "\n";
+  text += "            survey: " + variant_text(choice.survey) + "\n";
   if (choice.replanned.duration != choice.survey.duration) {
-    text += "  replanned views: " + variant_text(choice.replanned) + "\n";
+    text += "            replanned: " + variant_text(choice.replanned) + "\n";
   }
   if (choice.fly_through_duration) {
     text += fmt::format(

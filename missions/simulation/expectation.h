@@ -27,8 +27,8 @@ struct Expectation {
 };
 
 /// Predicts the cost of a feasible mission. Takes a few seconds: it evaluates surface samples from
-/// some hundred views, and runs the begin of the survey. Throws all errors of planner, sensor and
-/// session::SurveyFlight.
+/// some hundred views, and runs the beginning of the survey. Throws all errors of planner, sensor
+/// and session::SurveyFlight.
 Expectation expectation(const evaluation::SimulationOptions& options,
                         const evaluation::SurveyScene& scene, const session::RunOptions& run);
 

@@ -61,13 +61,13 @@ class Alarm {
 /// Sets the times of the survey from its first scans.
 void time_survey(const evaluation::SimulationOptions& options, const evaluation::SurveyScene& scene,
                  const session::RunOptions& run, PlanningPace& pace) {
-  evaluation::SimulationOptions begin = options;
-  begin.survey.limits.max_views = std::min(options.survey.limits.max_views, max_survey_views);
+  evaluation::SimulationOptions beginning = options;
+  beginning.survey.limits.max_views = std::min(options.survey.limits.max_views, max_survey_views);
   const Alarm alarm(max_survey_time);
   const Clock::time_point begun = Clock::now();
   std::size_t counted = 0;
   const session::SurveyRecord record = run_survey(
-      begin, scene, run.seed, run.threads, alarm.token(), [&](const session::EvaluatedView&) {
+      beginning, scene, run.seed, run.threads, alarm.token(), [&](const session::EvaluatedView&) {
         if (counted++ == 0) pace.start = seconds_since(begun);
       });
   const double all = seconds_since(begun);

@@ -393,6 +393,23 @@ class StudioTest(unittest.TestCase):
         self.assertIn(views.options[5].text, verdict.text)
         studio.picture("14_not_verified")
 
+    def test_edits_the_replanned_views_of_a_plan(self):
+        (self.folder / "mission.yaml").write_text(MISSION % "pot")
+        run("plan", str(self.folder / "mission.yaml"), "--out", str(self.folder / "plan"), "--quiet",
+            "--set", "flight.views=replanned")
+        replanned = json.loads((self.folder / "plan/summary.json").read_text())["flight"]["replanned"]
+        self.assertTrue(replanned["is_flown"])
+        studio = self.start("")
+        studio.click(studio.button("plan"))
+        studio.click("#edit-views")
+        views = Select(studio.wait("#views"))
+        self.assertEqual(len(views.options), len(replanned["stations"]))
+        for i, station in enumerate(replanned["stations"]):
+            views.select_by_index(i)
+            for name, value in zip("xyz", station["position"]):
+                shown = studio.wait(f"#view-editor input[data-name={name}]").get_attribute("value")
+                self.assertAlmostEqual(float(shown), value, delta=0.006)
+
     def test_shows_the_survey_while_it_is_planned(self):
         shutil.copy("missions/radcliffe_camera.yaml", self.folder / "mission.yaml")
         studio = self.start("mission.yaml")
@@ -413,7 +430,7 @@ class StudioTest(unittest.TestCase):
         (self.folder / "mission.yaml").write_text(MISSION % "pot")
         studio = self.start("mission.yaml")
         studio.click("#variants summary")
-        for ending in ("_shortest", "_replanned", "_fly_through", "_oblique"):
+        for ending in ("_mission", "_survey_views", "_replanned", "_fly_through", "_oblique"):
             row = f"#variants tr[data-variant={ending}]"
             studio.click(row + " button")
             studio.wait_for(lambda: len(studio.browser.find_elements(By.CSS_SELECTOR, row + " button")) == 2

@@ -134,20 +134,20 @@ function passage_parts(data) {
 }
 
 /// Compares the replanned mission with the mission through the survey's views.
-function anew_parts(data) {
-  const { replanned: anew } = data.summary.flight;
-  if (!anew) return [];
+function replanned_parts(data) {
+  const { replanned } = data.summary.flight;
+  if (!replanned) return [];
   const number = (content) => ({ number: content });
   const f = (path, form) => number(figure(data, "flight.replanned." + path, form));
   const row = (name, key) => [name, f(key + ".views", "count"), f(key + ".pieces", "count"), f(key + ".length_m", "metres"),
     f(key + ".duration_s", "minutes"), f(key + ".predicted_coverage", "share"),
-    typeof anew[key].predicted_reflight === "number" ? f(key + ".predicted_reflight", "share") : number("")];
-  const again = value_at(anew, "reflight.coverage_visible");
-  const passing = typeof anew.fly_through_duration_s === "number";
+    typeof replanned[key].predicted_reflight === "number" ? f(key + ".predicted_reflight", "share") : number("")];
+  const again = value_at(replanned, "reflight.coverage_visible");
+  const passing = typeof replanned.fly_through_duration_s === "number";
   return [element("h3", {}, "Choice of the views"),
-    anew.reason ? element("p", {}, "The mission contains the " + (anew.is_flown ? "replanned" : "survey") + " views: " + anew.reason + ".") : null,
+    replanned.reason ? element("p", {}, "The mission contains the " + (replanned.is_flown ? "replanned" : "survey") + " views: " + replanned.reason + ".") : null,
     table(["", "Views", "Segments", "Length", "Time", "Predicted coverage", "Points measured again"].map((name, i) => (i ? number(name) : name)),
-      [row("Survey views", "survey"), row(anew.is_flown ? "Replanned, in the mission" : "Replanned, not in the mission", "replanned")]),
+      [row("Survey views", "survey"), row(replanned.is_flown ? "Replanned, in the mission" : "Replanned, not in the mission", "replanned")]),
     passing ? element("p", {}, "A fly-through of these views would take ", figure(data, "flight.replanned.fly_through_duration_s", "minutes"),
       ". The file of the autopilot cannot contain its curve (flight.style: fly-through).") : null,
     typeof again === "number" ? element("p", {}, "In a simulated re-flight, the mission covers ",
@@ -214,7 +214,7 @@ function flight_section(data) {
       number(f(path + "energy_wh", "watt_hours")), number(f(path + "energy_left_wh", "watt_hours")),
       number(f(path + "min_clearance_m", "metres"))];
   })));
-  section.append(...written_parts(data), ...passage_parts(data), ...anew_parts(data), ...fleet_parts(data));
+  section.append(...written_parts(data), ...passage_parts(data), ...replanned_parts(data), ...fleet_parts(data));
   const terms = [["Vehicle radius", "vehicle_radius"], ["Position error", "position_error"],
     ["Tracking error", "tracking_error"], ["Map error", "map_error"], ["Margin", "margin"], ["Total", "total"]];
   section.append(element("h3", {}, "Clearance budget"),

@@ -39,18 +39,27 @@ function update_job(view, job) {
   view.listeners.forEach((listener) => listener(view));
 }
 
-/// Follows a job until its end.
-function follow_job(view, on_change) {
+/// Calls `on_change` with each state of a job. Ends with the job.
+function follow_states(id, on_change) {
   return new Promise((resolve) => {
-    const events = new EventSource("api/jobs/" + view.id + "/events");
+    const events = new EventSource("api/jobs/" + id + "/events");
     events.onmessage = (event) => {
-      update_job(view, JSON.parse(event.data));
-      if (on_change) on_change(view);
-      if (view.running) return;
+      const state = JSON.parse(event.data);
+      on_change(state);
+      if (state.running) return;
       events.close();
-      resolve(view);
+      resolve(state);
     };
   });
+}
+
+/// Follows a job until its end.
+async function follow_job(view, on_change) {
+  await follow_states(view.id, (state) => {
+    update_job(view, state);
+    if (on_change) on_change(view);
+  });
+  return view;
 }
 
 /// Starts a command and returns its job when it has ended. `on_change` is called with the job at
@@ -65,16 +74,10 @@ async function run_command(command, options, on_change, draft) {
 async function run_quietly(command, options, draft) {
   const job = await request("jobs", { command, options, draft });
   const lines = [];
-  return new Promise((resolve) => {
-    const events = new EventSource("api/jobs/" + job.id + "/events");
-    events.onmessage = (event) => {
-      const state = JSON.parse(event.data);
-      (state.lines || []).forEach((line, i) => { lines[state.from + i] = line; });
-      if (state.running) return;
-      events.close();
-      resolve({ ...state, lines });
-    };
+  const end = await follow_states(job.id, (state) => {
+    (state.lines || []).forEach((line, i) => { lines[state.from + i] = line; });
   });
+  return { ...end, lines };
 }
 
 /// Output of a command with its state and a button to cancel it, for the page of a step.

@@ -1,7 +1,8 @@
 // Variants of a mission side by side. Each row is a results folder and the command that writes it.
 
 const variants = [
-  { name: "Shortest order", ending: "", options: {} },
+  { name: "As in the mission", ending: "", options: {} },
+  { name: "Views of the survey", ending: "_survey_views", options: { "--set": ["flight.views=survey"] } },
   { name: "Order of the survey", ending: "_survey_order", options: { "--set": ["flight.order=survey"] } },
   { name: "Replanned views", ending: "_replanned", options: { "--set": ["flight.views=replanned"] } },
   { name: "Fly-through capture", ending: "_fly_through", options: { "--set": ["flight.style=fly-through"] } },
@@ -18,7 +19,7 @@ function variant_figures(summary) {
   const written = (flight.written || [])[0], share = (value) => (typeof value === "number" ? (100 * value).toFixed(2) + "%" : "–");
   const visible = written ? written.coverage_visible : summary.coverage_visible;
   const complete = summary.photo && summary.photo.figures.expected_completeness;
-  return { views: (summary.per_view || []).length, stations: sorties.reduce((sum, one) => sum + one.last_station - one.first_station + 1, 0),
+  return { planned: written ? written.planned_views : (summary.per_view || []).length, stations: sorties.reduce((sum, one) => sum + one.last_station - one.first_station + 1, 0),
     minutes: sorties.length ? minutes.toFixed(1) : "–", sorties: sorties.length,
     coverage: share(typeof visible === "number" ? visible : typeof complete === "number" ? complete : written ? written.coverage : summary.coverage) };
 }
@@ -56,9 +57,9 @@ function make_variants(mission) {
     },
     row(variant, folder, figures) {
       const problem = table.problems.get(folder);
-      const values = figures ? [figures.stations + " of " + figures.views, figures.minutes, String(figures.sorties), figures.coverage]
+      const values = figures ? [figures.stations + " of " + figures.planned, figures.minutes, String(figures.sorties), figures.coverage]
         : problem ? null : ["–", "–", "–", "–"];
-      return element("tr", { "data-variant": variant.ending || "_shortest" }, element("th", { scope: "row" }, variant.name),
+      return element("tr", { "data-variant": variant.ending || "_mission" }, element("th", { scope: "row" }, variant.name),
         values ? values.map((text) => cells(text, { class: "number" })) : cells(problem, { colspan: "4", class: "bad" }),
         cells(element("code", {}, command_of(variant))),
         cells(element("div", { class: "actions" }, button("Plan", () => table.plan(variant), { "aria-label": "Plan " + variant.name }),

@@ -1,17 +1,24 @@
 // Edits the views of a planned flight: they are moved, added and removed, and the program verifies the
 // new route in the space of the results folder (skycap export --route).
 
-/// Returns [{view, position, direction, via}] in flight order. `via` are the points of the leg to the
-/// view, and the key of the leg tells whether it still applies.
+/// Returns the views to which the legs of the flight refer: those of the survey, or the replanned ones.
+function planned_views(summary) {
+  const { replanned } = summary.flight || {};
+  return replanned && replanned.is_flown ? replanned.stations : summary.per_view || [];
+}
+
+/// Returns [{view, position, direction, via, from}] in flight order. `via` are the points of the leg to the
+/// view, and `from` is the view at which this leg begins.
 function flown_views(summary) {
+  const planned = planned_views(summary);
   const sorties = ((summary.flight || {}).route || {}).sorties || [];
-  if (!summary.per_view || !sorties.length || !sorties[0].legs) {
+  if (!planned.length || !sorties.length || !sorties[0].legs) {
     throw new Error("These results contain no views of a flight that can be edited.");
   }
   const views = [];
   for (const leg of sorties.flatMap((sortie) => sortie.legs)) {
     if (leg.to === null || leg.to === undefined) continue;
-    const { position, direction } = summary.per_view[leg.to];
+    const { position, direction } = planned[leg.to];
     views.push({ view: leg.to, position, direction, via: leg.points.slice(1, -1), from: leg.from ?? null });
   }
   return views;
@@ -80,7 +87,7 @@ function make_view_editor(stage, folder) {
       const answer = await fetch(file_address(editor.folder + "/summary.json"));
       if (!answer.ok) throw new Error(editor.folder + " contains no summary.json");
       const summary = await answer.json();
-      editor.original = summary.per_view || [];
+      editor.original = planned_views(summary);
       editor.set(flown_views(summary), true);
       history.clear();
       verdict.textContent = "";
