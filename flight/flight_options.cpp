@@ -188,11 +188,16 @@ double FlightOptions::climb() const {
 }
 
 double FlightOptions::max_return_altitude(double pad_z, double obstacles_top) const {
-  /// Rounding loses up to 1 m, and autopilots may fly level up to 2 m lower.
-  constexpr double margin = 3.0;
-  const AlignedBox3d box = unknown_box;
+  /// Rounding loses up to 1 m, and autopilots may fly level up to 2 m lower. The rest is a surplus,
+  /// without which no proof succeeds.
+  constexpr double margin = 3.5;
+  const double voxel = clearance / voxels_per_clearance;  // unknown space extends to whole voxels
   double top = std::max(obstacles_top, airspace.base.z());
-  if (!box.isEmpty()) top = std::max(top, box.max().z());
+  const auto include = [&](const AlignedBox3d& box) {
+    if (!box.isEmpty()) top = std::max(top, voxel * std::ceil(box.max().z() / voxel));
+  };
+  include(unknown_box);
+  std::ranges::for_each(extra_unknown_boxes, include);
   for (const auto& obstacle : airspace.priors) {
     if (!obstacle->extent().isEmpty()) top = std::max(top, obstacle->extent().max().z());
   }

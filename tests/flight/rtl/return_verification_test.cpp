@@ -8,7 +8,10 @@
 #include <gtest/gtest.h>
 
 #include "flight/clearance/measured_space.h"
+#include "flight/flight_options.h"
+#include "flight/route/route.h"
 #include "tests/flight/scenes.h"
+#include "tests/flight/vehicles.h"
 
 namespace skycap::flight {
 namespace {
@@ -41,6 +44,23 @@ TEST(ReturnVerification, ComputesClearanceOfReturnAlongWall) {
   EXPECT_TRUE(verification.is_verified);
   EXPECT_NEAR(verification.clearance, 2.0 + 1e-3, 1e-5);
   EXPECT_FALSE(verify_returns(too_near, position, rtl_profile, clearance).is_verified);
+}
+
+// Over unknown space, the altitude for which routes are planned is sufficient whatever the height
+// of its top: rounding to whole metres and voxels, and autopilots that fly lower, are included.
+TEST(ReturnVerification, VerifiesReturnsOverUnknownSpaceOfAnyHeight) {
+  FlightOptions options{.vehicle = vehicle_profile("m350_rtk"), .clearance = clearance};
+  const Vector3d pad(-70, 0, 0);
+  for (int centimetres = 2000; centimetres <= 2100; centimetres += 3) {
+    const double top = 0.01 * centimetres;
+    options.unknown_box = {Vector3d(-10, -10, 0), Vector3d(10, 10, top)};
+    options.extra_unknown_boxes.assign(1, {Vector3d(-40, -5, 0), Vector3d(-30, 5, top + 1.5)});
+    const MeasuredSpace space(options.measured_space());
+    const RtlProfile rtl_profile = planning_rtl_profile(options.route(pad), pad.z());
+    const Segment leg{{20, -5, 15}, {20, 5, 18}};
+    EXPECT_TRUE(verify_returns(space, leg, rtl_profile, return_clearance(clearance)).is_verified)
+        << top;
+  }
 }
 
 // A leg along a wall is verified within the slack and rejected below the clearance.
