@@ -64,7 +64,11 @@ Vector3d uniform_direction(geometry::RandomNumbers& random) {
   }
 }
 
-survey::ViewSphere sphere_around(std::span<const Eigen::Vector3f> surface, double view_distance) {
+/// The sphere does not depend on evaluation.samples, so neither do the views of a survey.
+survey::ViewSphere sphere_around(const geometry::Mesh& model, double view_distance) {
+  constexpr std::size_t samples = 100'000;
+  const std::vector<Eigen::Vector3f> surface =
+      geometry::sample_surface(model, samples, sample_seed).points;
   Vector3d centroid = Vector3d::Zero();
   for (const auto& point : surface) centroid += point.cast<double>();
   centroid /= static_cast<double>(surface.size());
@@ -121,7 +125,7 @@ SurveyScene::SurveyScene(const SimulationOptions& options, const std::filesystem
       scene_(make_scene(model_, options, folder, threads)),
       samples_(geometry::sample_surface(model_, options.evaluation.samples, sample_seed)),
       view_distance_(options.survey.planner.view_distance),
-      view_sphere_(sphere_around(samples_.points, view_distance_)),
+      view_sphere_(sphere_around(model_, view_distance_)),
       radius_(options.evaluation.radius.value_or(options.survey.planner.limits.min_standoff)),
       kept_(kept) {}
 

@@ -104,6 +104,15 @@ TEST(SurveyScene, IncludesRoomsPassableForRadius) {
   EXPECT_LT(seen_inside("2"), 0.2);
 }
 
+// The evaluation must not change the survey.
+TEST(SurveyScene, DrawsTheFirstViewIndependentlyOfTheSamples) {
+  const WindowedRoom room(3.0);
+  const geometry::View few = room.scene({{"--set", "evaluation.samples", "1000"}}).first_view(7);
+  const geometry::View many = room.scene({{"--set", "evaluation.samples", "9000"}}).first_view(7);
+  EXPECT_EQ(few.position, many.position);
+  EXPECT_EQ(few.direction, many.direction);
+}
+
 TEST(SurveyScene, RejectsStartInsideWall) {
   const WindowedRoom room(3.0);
   const evaluation::SurveyScene scene = room.scene({{"--set", "start.position", "[10.25, 0, 5]"},
