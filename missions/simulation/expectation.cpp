@@ -38,7 +38,7 @@ struct Share {
 Share find_view_ratio(survey::PlannerName planner) {
   switch (planner) {
     case survey::PlannerName::skycap:
-      return {1.1, 2.0};
+      return {1.0, 2.2};
     case survey::PlannerName::see_plus_plus:
       return {1.3, 4.0};
     default:
