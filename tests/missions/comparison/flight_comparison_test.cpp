@@ -37,8 +37,8 @@ class FlightComparisonTest : public testing::Test {
  protected:
   FlightComparisonTest() {
     const std::string mission = folder_.write("teapot.yaml", tests::flight_mission());
-    const tests::ProgramRun plan =
-        tests::run_skycap({"plan", mission, "--out", folder_ / "teapot", "--no-report"});
+    const tests::ProgramRun plan = tests::run_skycap(
+        {"plan", mission, "--seed", "2", "--out", folder_ / "teapot", "--no-report"});
     EXPECT_EQ(plan.exit_code, 0) << plan.err;
     const auto states =
         flight::read_trajectory_csv(tests::read_content(folder_ / "teapot/mission.csv"));
@@ -105,7 +105,7 @@ class FlightComparisonTest : public testing::Test {
     std::vector<std::string> arguments{"compare", folder_ / "teapot"};
     arguments.insert(arguments.end(), logs.begin(), logs.end());
     const tests::ProgramRun run = tests::run_skycap(arguments);
-    EXPECT_EQ(run.exit_code, exit_code) << run.err;
+    EXPECT_EQ(run.exit_code, exit_code) << run.out << run.err;
     return Json::parse(tests::read_content(folder_ / "teapot/compare/compare.json"));
   }
 

@@ -33,7 +33,8 @@ using tests::run_skycap;
 using tests::TestFolder;
 
 TEST(SurveyScene, StartsAtConfiguredOrRandomView) {
-  const config::MissionSetup mission = config::parse_mission(quick_mission(), "m.yaml");
+  const config::MissionSetup mission =
+      config::parse_mission(quick_mission(), "m.yaml", {{"--set", "evaluation.samples", "100000"}});
   const evaluation::SurveyScene scene(mission.simulation, "", 0);
   const geometry::View a = scene.first_view(1), b = scene.first_view(2);
   EXPECT_EQ(a.position, scene.first_view(1).position);

@@ -161,8 +161,10 @@ TEST(LiveSurvey, IsUnaffectedByRejectedScans) {
     }
     rehearsal.add_one(survey);
   }
-  EXPECT_EQ(wrong, 4U);
-  expect_same(rehearsal.open(folder.path()).finish(), rehearsal.planned());
+  const session::SurveyRecord planned = rehearsal.planned();
+  ASSERT_GT(planned.views.size(), 2U);
+  EXPECT_EQ(wrong, planned.views.size() - 1);
+  expect_same(rehearsal.open(folder.path()).finish(), planned);
 }
 
 TEST(LiveSurvey, KeepsPoseWarningUntilScanIsUsed) {
