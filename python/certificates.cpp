@@ -70,7 +70,8 @@ void bind_certificate(py::module_& module) {
     if (certificate.verification.closest.kind == flight::ObstacleKind::none) return py::none();
     return to_array(at);
   };
-  py::class_<Certificate>(module, "LegCheck", "Result of the clearance check of a straight leg.")
+  py::class_<Certificate>(module, "LegCheck", py::is_final(),
+                          "Result of the clearance check of a straight leg.")
       .def_property_readonly(
           "is_clear", [](const Certificate& c) { return c.verification.is_verified; },
           "True if every point of the leg keeps the clearance.")
@@ -107,7 +108,7 @@ void bind_certificate(py::module_& module) {
 void bind_certificates(py::module_& module) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   py::class_<Prism>(
-      module, "Prism",
+      module, "Prism", py::is_final(),
       "An upright prism over a simple polygon: Prism(name, footprint, floor=-inf,\n"
       "ceiling=inf). The footprint has the shape (N, 2). All values are in metres, world frame.")
       .def(py::init(&prism_from), py::arg("name"), py::arg("footprint"),

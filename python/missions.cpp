@@ -103,7 +103,7 @@ py::tuple simulated_scan(const Simulation& simulation, const geometry::View& vie
 void bind_simulation(py::module_& module) {
   using without_lock = py::call_guard<py::gil_scoped_release>;
   py::class_<Simulation>(
-      module, "Simulation",
+      module, "Simulation", py::is_final(),
       "The simulated world of plan(): Simulation(mission) loads the mission's scene and "
       "measures\nit with the mission's sensor. For custom survey loops. Thread-safe.")
       .def(py::init<const Mission&>(), py::arg("mission"), without_lock())
@@ -118,7 +118,7 @@ void bind_simulation(py::module_& module) {
 }  // namespace
 
 void bind_missions(py::module_& module) {
-  py::class_<Mission>(module, "Mission",
+  py::class_<Mission>(module, "Mission", py::is_final(),
                       "A mission file, read, checked and completed with defaults as by `skycap "
                       "plan`. Immutable. Created by\n"
                       "Mission.load and Mission.parse.")

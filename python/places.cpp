@@ -46,7 +46,7 @@ py::array_t<double> make_rays(const CameraConfig& config) {
 }
 
 void bind_camera(py::module_& module) {
-  py::class_<CameraConfig>(module, "Camera",
+  py::class_<CameraConfig>(module, "Camera", py::is_final(),
                            "A pinhole depth camera. Optical frame: x right, y down, z forward, in "
                            "metres; pixel (0, 0)\nis the centre of the top-left pixel.")
       .def_readonly("width", &CameraConfig::width, "Image width, in pixels.")
@@ -66,7 +66,7 @@ void bind_camera(py::module_& module) {
 }  // namespace
 
 void bind_poses(py::module_& module) {
-  py::class_<View>(module, "View",
+  py::class_<View>(module, "View", py::is_final(),
                    "A viewpoint: View(position, direction), arrays of shape (3,) in the world "
                    "frame (x east,\ny north, z up), in metres. The direction is normalised.")
       .def(py::init(&view_from), py::arg("position"), py::arg("direction"))

@@ -116,7 +116,8 @@ py::dict times_to_dict(const PlanningStep& step) {
 }
 
 void bind_step(py::module_& module) {
-  py::class_<PlanningStep>(module, "PlanningStep", "Statistics of the planner's last step.")
+  py::class_<PlanningStep>(module, "PlanningStep", py::is_final(),
+                           "Statistics of the planner's last step.")
       .def_readonly("points_new", &PlanningStep::points_new, "Number of points kept from the scan.")
       .def_readonly("frontiers", &PlanningStep::frontiers, "Number of frontiers.")
       .def_readonly("frontiers_resolved", &PlanningStep::frontiers_resolved,
@@ -133,7 +134,7 @@ void bind_clouds(py::module_& module) {
   const char* views =
       "0-based index of the scan that measured each point: uint32, shape (N,); read-only.";
   py::class_<ShownCloud>(
-      module, "PlannerCloud",
+      module, "PlannerCloud", py::is_final(),
       "The measurements kept by a planner. While this object or one of its arrays is alive, the\n"
       "planner does not accept scans.")
       .def_property_readonly(
@@ -149,7 +150,7 @@ void bind_clouds(py::module_& module) {
           },
           views)
       .def("__len__", [](const ShownCloud& shown) { return shown.cloud().size(); });
-  py::class_<geometry::PointCloud>(module, "PointCloud", "The points of a survey.")
+  py::class_<geometry::PointCloud>(module, "PointCloud", py::is_final(), "The points of a survey.")
       .def_property_readonly(
           "xyz",
           [](const py::object& self) {
@@ -171,7 +172,7 @@ void bind_planner(py::module_& module) {
   bind_step(module);
   bind_clouds(module);
   py::class_<Planner>(
-      module, "Planner",
+      module, "Planner", py::is_final(),
       "View planner: Planner(mission) creates the planner of the mission, which accepts scans "
       "of\na real or simulated sensor and proposes the next view. May be used from any thread, "
       "one\ncall at a time; other Python threads continue to run.")

@@ -93,7 +93,7 @@ std::unique_ptr<ScanChunks> scan(const Mission& mission, const std::optional<std
 }  // namespace
 
 void bind_scans(py::module_& module) {
-  py::class_<ScanChunks>(module, "LaserScan",
+  py::class_<ScanChunks>(module, "LaserScan", py::is_final(),
                          "An iterator over the pieces of a laser scanner's flight; see scan().")
       .def("__iter__", [](const py::object& self) { return self; })
       .def("__next__", &ScanChunks::next);

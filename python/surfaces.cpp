@@ -56,7 +56,7 @@ Evaluation evaluate(const Array<float>& points, const Mesh& model, double distan
 }
 
 void bind_evaluation(py::module_& module) {
-  py::class_<Evaluation>(module, "Evaluation",
+  py::class_<Evaluation>(module, "Evaluation", py::is_final(),
                          "Evaluation of a cloud against a reference surface. Distances are those "
                          "of the cloud's\npoints to the surface, in metres.")
       .def_readonly(
@@ -86,7 +86,7 @@ void bind_evaluation(py::module_& module) {
 
 void bind_surfaces(py::module_& module) {
   py::class_<Mesh>(
-      module, "Mesh",
+      module, "Mesh", py::is_final(),
       "A triangle mesh: Mesh(vertices, triangles). The vertices are (N, 3) float64 in metres,\n"
       "z up. The triangles are (M, 3) uint32, counter-clockwise seen from outside. Both are "
       "copied.")

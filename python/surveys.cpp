@@ -38,7 +38,7 @@ Survey plan(const Mission& mission, const std::optional<std::filesystem::path>& 
 }
 
 void bind_surveyed_view(py::module_& module) {
-  py::class_<SurveyedView>(module, "SurveyedView",
+  py::class_<SurveyedView>(module, "SurveyedView", py::is_final(),
                            "A view of a survey, with the planner's statistics of its scan.")
       .def_readonly("view", &SurveyedView::view, "Position and direction of the sensor.")
       .def_readonly("distance", &SurveyedView::distance,
@@ -54,7 +54,7 @@ void bind_surveyed_view(py::module_& module) {
 
 void bind_surveys(py::module_& module) {
   bind_surveyed_view(module);
-  py::class_<Survey>(module, "Survey", "A survey from its first to its last view.")
+  py::class_<Survey>(module, "Survey", py::is_final(), "A survey from its first to its last view.")
       .def_property_readonly(
           "end", [](const Survey& whole) { return survey::to_string(whole.end); },
           "Stop reason: 'complete', 'view_limit', 'distance_limit', 'time_limit' "

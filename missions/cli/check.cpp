@@ -225,9 +225,6 @@ int check_survey(const CheckOptions& options, const config::MissionSetup& setup,
         scene_text(setup.survey().planner, core_threshold(package::settings_json(setup)), scene);
     if (setup.scene().priors) text += site_data::format_priors(*setup.scene().priors);
     for (const std::string& problem : found.problems) text += "  problem   " + problem + "\n";
-    for (const std::string& warning : found.warnings) text += "  warning   " + warning + "\n";
-    const std::string range = range_warning(setup, scene.view_distance());
-    if (!range.empty()) text += "  warning   " + range + "\n";
     if (found.problems.empty()) {
       progress.show(setup.name + ": searching for views");
       // plan begins with the same steps as check, and reads the same files.
@@ -239,6 +236,9 @@ int check_survey(const CheckOptions& options, const config::MissionSetup& setup,
       expected.max_time += loading;
       text += expectation_text(expected);
     }
+    for (const std::string& warning : found.warnings) text += "  Warning: " + warning + "\n";
+    const std::string range = range_warning(setup, scene.view_distance());
+    if (!range.empty()) text += "  Warning: " + range + "\n";
     progress.clear();
     console.out << text << std::flush;
     return found.problems.empty() ? 0 : 1;

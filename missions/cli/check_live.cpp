@@ -41,7 +41,7 @@ class LiveCheck {
     text += sensor_text() + region_text() + limits_text() + first_view_text();
     if (setup_.scene().priors) text += site_data::format_priors(*setup_.scene().priors);
     for (const std::string& problem : problems_) text += "  problem   " + problem + "\n";
-    for (const std::string& warning : warnings_) text += "  warning   " + warning + "\n";
+    for (const std::string& warning : warnings_) text += "  Warning: " + warning + "\n";
     return text;
   }
 

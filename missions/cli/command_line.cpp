@@ -24,6 +24,7 @@
 #include "missions/cli/rewrite.h"
 #include "missions/config/mission_keys.h"
 #include "missions/scan/cloud_formats.h"
+#include "missions/support/similar_name.h"
 #include "survey/planners/planner_names.h"
 
 namespace skycap::missions::cli {
@@ -412,6 +413,35 @@ int report_failure(const Console& console, const std::string& message, int exit_
   return exit_code;
 }
 
+std::string unknown_command_text(const std::string& word, const std::vector<std::string>& known,
+                                 const std::string& commands) {
+  std::string similar = support::find_similar(word, known);
+  if (word == "help" || word == "version") similar = "--" + word;
+  return "unknown command '" + word + "'; " +
+         (similar.empty() ? "expected one of: " + commands : "did you mean '" + similar + "'?");
+}
+
+/// Returns the message for arguments that are not expected. It suggests the most similar option of
+/// the command.
+std::string unexpected_text(const CLI::App& app, const CLI::ExtrasError& failure) {
+  std::vector<std::string> names;
+  std::vector<const CLI::App*> parts{&app};
+  for (const CLI::App* command : app.get_subcommands()) parts.push_back(command);
+  for (const CLI::App* part : parts) {
+    for (const CLI::Option* option : part->get_options()) {
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    }
+  }
+  for (const std::string& extra : app.remaining(true)) {
+    if (!extra.starts_with("--")) continue;
+    const std::string word = extra.substr(0, extra.find('='));
+    const std::string similar = support::find_similar(word, names);
+    return "unknown option '" + word + "'" +
+           (similar.empty() ? "; see --help" : "; did you mean '" + similar + "'?");
+  }
+  return std::string(failure.what()) + "; see --help";
+}
+
 int parse_and_run(const std::vector<std::string>& arguments, Console console) {
   CLI::App app("Skycap plans and simulates aerial surveys of buildings.", "skycap");
   app.set_version_flag("--version", build_text(), "Print version, commit, compiler and build");
@@ -452,14 +482,15 @@ int parse_and_run(const std::vector<std::string>& arguments, Console console) {
     add_studio(app, console, action);
     add_presets(app, console, action);
     add_completion(app, console, action);
-    const auto known = app.get_subcommands({});
+    std::vector<std::string> known;
     std::string commands;
-    for (const CLI::App* command : known)
+    for (const CLI::App* command : app.get_subcommands({})) {
+      known.push_back(command->get_name());
       commands += (commands.empty() ? "" : ", ") + command->get_name();
+    }
     if (!arguments.empty() && !arguments[0].starts_with('-') &&
-        std::ranges::find(known, arguments[0], &CLI::App::get_name) == known.end()) {
-      throw Error(ErrorKind::bad_usage,
-                  "unknown command '" + arguments[0] + "'; expected one of: " + commands);
+        std::ranges::find(known, arguments[0]) == known.end()) {
+      throw Error(ErrorKind::bad_usage, unknown_command_text(arguments[0], known, commands));
     }
     std::vector<std::string> reversed = with_current_options(arguments, console);
     std::ranges::reverse(reversed);  // CLI11 expects reversed arguments
@@ -473,6 +504,8 @@ int parse_and_run(const std::vector<std::string>& arguments, Console console) {
     return action();
   } catch (const CLI::Success& success) {  // --help or --version
     return app.exit(success, console.out, console.err);
+  } catch (const CLI::ExtrasError& failure) {
+    return report_failure(console, unexpected_text(app, failure), 2);
   } catch (const CLI::ParseError& failure) {
     return report_failure(console, std::string(failure.what()) + "; see --help", 2);
   } catch (const Interrupted&) {

@@ -1,5 +1,6 @@
 // Commands of live surveys: next, finish, serve and fly.
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -19,6 +20,7 @@
 #include "missions/online/guided/fly_survey.h"
 #include "missions/online/guided/network_port.h"
 #include "missions/online/guided/sensors.h"
+#include "missions/online/guided/simulated_autopilot.h"
 #include "missions/online/live/answer.h"
 #include "missions/online/live/scan_input.h"
 #include "missions/online/live/server.h"
@@ -347,7 +349,7 @@ namespace {
 
 /// Options of a survey flown with an autopilot.
 struct FlyOptions : LiveOptions {
-  std::string connect;               ///< address for online::parse_address()
+  std::string connect;               ///< "simulated", or an address for online::parse_address()
   std::string sensor = "simulated";  ///< "simulated", or the path of a folder that receives scans
   std::string on_failure = "hold";   ///< "hold" or "return"
   std::string intrinsics;            ///< camera intrinsics of depth images
@@ -372,19 +374,26 @@ online::Sensor make_sensor(const FlyOptions& options,
 /// Flies a live survey. Returns exit code 0 if the survey is complete, the vehicle has landed and
 /// the package has a route.
 int fly_live(const FlyOptions& options, const Console& console) {
-  const online::NetworkAddress address = online::parse_address(options.connect);
+  const bool is_simulated = options.connect == "simulated";
+  std::optional<online::NetworkAddress> address;
+  if (!is_simulated) address = online::parse_address(options.connect);
   const config::MissionSetup setup = read_live(options, console);
   online::require_flyable(setup.flight());
   online::Sensor sensor = make_sensor(options, setup.simulation, setup.live, setup.run, console);
   const auto survey = open_survey(setup, options.mission.parent_path(), options.survey);
-  online::NetworkPort port(address);
-  if (!address.is_loopback()) {
-    warn(console, "MAVLink is not authenticated: anyone who can reach " + options.connect +
-                      " can send commands to this vehicle");
-  }
-  if (!options.is_quiet) {
-    console.err << printable_line(options.connect + ": waiting for an autopilot") << "\n"
-                << std::flush;
+  std::unique_ptr<flight::mavlink::Port> port;
+  if (is_simulated) {
+    port = online::make_simulated_port(setup.flight(), survey->flight()->pad());
+  } else {
+    port = std::make_unique<online::NetworkPort>(*address);
+    if (!address->is_loopback()) {
+      warn(console, "MAVLink is not authenticated: anyone who can reach " + options.connect +
+                        " can send commands to this vehicle");
+    }
+    if (!options.is_quiet) {
+      console.err << printable_line(options.connect + ": waiting for an autopilot") << "\n"
+                  << std::flush;
+    }
   }
   const PendingResultsGuard results(console);
   online::FlightOptions flight;
@@ -393,8 +402,9 @@ int fly_live(const FlyOptions& options, const Console& console) {
   flight.note = [&](const std::string& text) {
     if (!options.is_quiet) console.err << printable_line(text) << "\n" << std::flush;
   };
-  const online::FlightEnd end = online::fly_survey(setup.flight(), *survey, port, std::move(sensor),
-                                                   std::move(flight), console.stop);
+  if (is_simulated) flight.launch = online::run_at_once;
+  const online::FlightEnd end = online::fly_survey(
+      setup.flight(), *survey, *port, std::move(sensor), std::move(flight), console.stop);
   if (end.failure) {
     console.err << "skycap: flight ended: " << printable_line(end.failure->what)
                 << (end.has_landed ? "; landed at the take-off point" : "")
@@ -416,8 +426,8 @@ void add_fly(CLI::App& app, const Console& console, Action& action) {
   add_live_options(*command, *options, *keys);
   command
       ->add_option("--connect", options->connect,
-                   "MAVLink connection: udp:127.0.0.1:14550 to listen, udpout:HOST:PORT or "
-                   "tcp:HOST:PORT to connect")
+                   "Autopilot: simulated (built in, for trials), udp:127.0.0.1:14550 to listen, "
+                   "udpout:HOST:PORT or tcp:HOST:PORT to connect")
       ->required();
   command->add_option(
       "--sensor", options->sensor,

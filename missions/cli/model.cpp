@@ -76,11 +76,27 @@ std::optional<Eigen::AlignedBox3d> around_targets(const site_data::SitePriors& s
   return Eigen::AlignedBox3d(box.min() - reach, box.max() + reach);
 }
 
+/// Returns the site without the objects of obstacles that are also targets or ground truth.
+site_data::SitePriors without_repeated_objects(const site_data::SitePriors& site) {
+  const std::vector<const geometry::Mesh*> neighbours = scene::find_neighbours(site);
+  site_data::SitePriors others = site;
+  for (std::size_t i = 0; i < site.priors.size(); ++i) {
+    if (site.sources[i].role != site_data::Role::obstacle) continue;
+    others.priors[i].objects.clear();
+    for (const site_data::Object& object : site.priors[i].objects) {
+      if (std::ranges::find(neighbours, &object.mesh) != neighbours.end()) {
+        others.priors[i].objects.push_back(object);
+      }
+    }
+  }
+  return others;
+}
+
 /// Returns the whole site, or its objects near a box.
 ColouredMesh coloured_site(const Site& given, const std::optional<Eigen::AlignedBox3d>& near) {
   const auto& [scene, model] = given;
   if (!scene.priors) return {model, {}};
-  const site_data::SitePriors& site = *scene.priors;
+  const site_data::SitePriors site = without_repeated_objects(*scene.priors);
   ColouredMesh coloured;
   if (!scene.is_truth_prior()) coloured.add(model, {0.80F, 0.71F, 0.55F});
   coloured.add(make_surfaces(site, site_data::Role::truth, near), {0.62F, 0.68F, 0.75F});

@@ -1,29 +1,14 @@
 #include "missions/config/unknown_key.h"
 
 #include <algorithm>
-#include <numeric>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "missions/support/similar_name.h"
+
 namespace skycap::missions::config {
 namespace {
-
-/// Returns the Levenshtein distance: the number of characters to insert, delete or replace.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), 0U);
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t changed = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({changed, row[j] + 1, row[j + 1] + 1});
-    }
-  }
-  return row.back();
-}
 
 std::string_view last_part(std::string_view path) { return path.substr(path.rfind('.') + 1); }
 
@@ -37,8 +22,8 @@ std::string unknown_key_message(const std::string& path, std::span<const Key> ke
   for (const Key& key : keys) {
     if (path.size() > longest) break;
     // A key may be misspelt, or be in the wrong section with at most a slight misspelling.
-    const std::size_t slip = edit_distance(last_part(path), last_part(key.path));
-    std::size_t distance = edit_distance(path, key.path);
+    const std::size_t slip = support::edit_distance(last_part(path), last_part(key.path));
+    std::size_t distance = support::edit_distance(path, key.path);
     if (4 * slip <= last_part(path).size()) distance = std::min(distance, slip + 1);
     if (!nearest || distance < nearest_distance) nearest = &key, nearest_distance = distance;
   }

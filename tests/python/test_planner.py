@@ -48,6 +48,10 @@ def ball_mesh(rings):
 
 
 class ForeignSimulator(unittest.TestCase):
+    def test_cannot_be_a_base_class(self):
+        with self.assertRaises(TypeError):
+            type("Mine", (skycap.Planner,), {})
+
     def test_has_a_ball_surveyed_to_the_end(self):
         mission = skycap.Mission.parse(LIVE, "ball.yaml")
         planner = skycap.Planner(mission)

@@ -30,6 +30,13 @@ bool may_return(FailureKind kind) {
 
 }  // namespace
 
+std::future<void> run_at_once(const std::function<void()>& work) {
+  work();
+  std::promise<void> done;
+  done.set_value();
+  return done.get_future();
+}
+
 LiveFlight::LiveFlight(LiveSurvey& survey, GuidedFlight& vehicle, const flight::Motion& motion,
                        Sensor sensor, FlightOptions options)
     : survey_(survey),

@@ -46,6 +46,9 @@ struct FlightOptions {
   };
 };
 
+/// Runs work before it returns, for autopilots whose time does not advance meanwhile.
+std::future<void> run_at_once(const std::function<void()>& work);
+
 struct FlightEnd {
   MaybeFailure failure;     ///< Reason for an early end of the survey.
   bool has_landed = false;  ///< True after a landing on the pad under this program's control.

@@ -44,7 +44,7 @@ bool succeeds(int (*act)(int, const sockaddr*, socklen_t), int handle, const soc
 NetworkAddress parse_address(const std::string& text) {
   const std::string form =
       "must be udp:HOST:PORT, udpout:HOST:PORT or tcp:HOST:PORT, with an IPv4 "
-      "address such as 127.0.0.1 for HOST";
+      "address such as 127.0.0.1 for HOST, or simulated";
   const std::size_t first = text.find(':'), last = text.rfind(':');
   if (first == std::string::npos || first == last) reject(text, form);
   NetworkAddress address;

@@ -5,13 +5,26 @@ const layer_names = {
   free: "free-space boundary", volumes: "volumes", priors: "prior data", ground: "ground",
 };
 
-/// Returns the bounding box of all objects of the survey.
+/// Returns the box of the scene to survey, or null.
+function scene_box(data) {
+  const volume = ((data.scene && data.scene.volumes) || []).find(({ role }) => role === "scene");
+  if (!volume) return null;
+  const box = new THREE.Box3();
+  for (const [x, y] of volume.corners) {
+    for (const z of [volume.bottom, volume.top]) box.expandByPoint(new THREE.Vector3(x, y, z));
+  }
+  return box;
+}
+
+/// Returns the bounding box of all objects of the survey, and the box that is shown first. Scans
+/// also contain the ground far from the scene.
 function extent_of(data, clouds) {
   const box = new THREE.Box3();
   for (const [name, cloud] of Object.entries(clouds)) {
     if (cloud.count && name !== "free") box.union(new THREE.Box3().setFromArray(cloud.positions));
   }
-  const core = box.clone();
+  const core = box.clone(), scene = data.pieces ? scene_box(data) : null;
+  if (scene && scene.intersectsBox(core)) core.intersect(scene);
   for (const view of views_of(data)) box.expandByPoint(vector(view.position));
   if (data.scene && data.scene.pad) box.expandByPoint(vector(data.scene.pad));
   if (box.isEmpty()) {

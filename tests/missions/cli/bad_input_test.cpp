@@ -247,6 +247,23 @@ TEST(ProgramUsage, RejectsUnknownCommands) {
               StartsWith("skycap: error: unknown command 'soar'; expected one of: plan, "));
 }
 
+TEST(ProgramUsage, SuggestsCommandsAndOptions) {
+  const auto error = [](const std::vector<std::string>& arguments) {
+    const auto run = tests::run_skycap(arguments);
+    EXPECT_EQ(run.exit_code, 2) << arguments.front();
+    return run.err;
+  };
+  EXPECT_EQ(error({"paln", "m.yaml"}),
+            "skycap: error: unknown command 'paln'; did you mean 'plan'?\n");
+  EXPECT_EQ(error({"help"}), "skycap: error: unknown command 'help'; did you mean '--help'?\n");
+  EXPECT_EQ(error({"plan", "m.yaml", "--max-veiws=3"}),
+            "skycap: error: unknown option '--max-veiws'; did you mean '--max-views'?\n");
+  EXPECT_EQ(error({"plan", "m.yaml", "--progres", "none"}),
+            "skycap: error: unknown option '--progres'; did you mean '--progress'?\n");
+  EXPECT_EQ(error({"plan", "m.yaml", "--altitude", "3"}),
+            "skycap: error: unknown option '--altitude'; see --help\n");
+}
+
 TEST(ProgramUsage, RejectsMissingArguments) {
   EXPECT_EQ(tests::run_skycap({}).exit_code, 2);
   EXPECT_EQ(tests::run_skycap({"plan"}).exit_code, 2);

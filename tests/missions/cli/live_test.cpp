@@ -58,7 +58,7 @@ TEST(CheckLive, SaysWhatFollowsFromTheMission) {
                              HasSubstr("160 x 120 pixels, 60 x 47 degrees, range 0 to 8 m"),
                              HasSubstr("planner.scene_box, 2 x 2 x 1.7 m"),
                              HasSubstr("first     any view from which the scene is visible"),
-                             HasSubstr("warning   site.geofence is missing")));
+                             HasSubstr("Warning: site.geofence is missing")));
   const ProgramRun far =
       run_skycap({"check", folder / "barn.yaml", "--set", "planner.view_distance=9"});
   EXPECT_EQ(far.exit_code, 1) << far.err;

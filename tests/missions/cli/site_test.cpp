@@ -287,7 +287,7 @@ TEST_F(Site, ProposesWhatCheckFindsNoFaultWith) {
   EXPECT_EQ(proposed.sensor().camera.camera.width, 320);
   const auto check = run_skycap("check " + path_ + "/house.yaml");
   EXPECT_EQ(check.exit_code, 0) << check.out;
-  EXPECT_EQ(check.out.find("warning"), std::string::npos) << check.out;
+  EXPECT_EQ(check.out.find("Warning"), std::string::npos) << check.out;
 }
 
 // Without RTK, the position error of a vehicle may exceed what the default clearance allows.

@@ -17,7 +17,7 @@
 #include "geometry/error.h"
 #include "geometry/surfaces/mesh_distance.h"
 #include "missions/evaluation/survey_scene.h"
-#include "tests/missions/online/guided/test_autopilot.h"
+#include "missions/online/guided/simulated_autopilot.h"
 #include "tests/missions/online/live/rehearsal.h"
 #include "tests/missions/simulated_mission.h"
 #include "tests/support/complaint.h"
@@ -34,23 +34,15 @@ std::string mission_text() {
   return text.insert(text.find(vehicle) + vehicle.size(), "_ardupilot");
 }
 
-/// Does the work synchronously. The autopilot's time does not advance meanwhile.
-std::future<void> done_at_once(const std::function<void()>& work) {
-  work();
-  std::promise<void> done;
-  done.set_value();
-  return done.get_future();
-}
-
 /// A survey, its autopilot, and the messages of the flight.
 class FlySurvey : public testing::Test {
  protected:
-  FlightEnd fly(const Faults& faults = {}, FlightOptions options = {}) {
+  FlightEnd fly(const AutopilotFaults& faults = {}, FlightOptions options = {}) {
     survey_.reset();
     survey_.reset(new online::LiveSurvey(rehearsal_.open(folder_->path())));
-    autopilot_ = std::make_unique<TestAutopilot>(rehearsal_.setup().flight(),
-                                                 survey_->flight()->pad(), faults);
-    if (!launches_) options.launch = done_at_once;
+    autopilot_ = std::make_unique<SimulatedAutopilot>(rehearsal_.setup().flight(),
+                                                      survey_->flight()->pad(), faults);
+    if (!launches_) options.launch = run_at_once;
     options.note = [this](const std::string& text) { notes_ += text + "\n"; };
     SteppedPort port(*autopilot_);
     return fly_survey(rehearsal_.setup().flight(), *survey_, port, sensor_, options,
@@ -71,7 +63,7 @@ class FlySurvey : public testing::Test {
   bool launches_ = false;
   std::stop_source stop_;
   std::unique_ptr<online::LiveSurvey> survey_;
-  std::unique_ptr<TestAutopilot> autopilot_;
+  std::unique_ptr<SimulatedAutopilot> autopilot_;
   std::string notes_;
 };
 
@@ -173,7 +165,7 @@ TEST_F(FlySurvey, StaysOnLegsWhenLinkIsLost) {
 
 struct HeldFlight {
   const char* name;
-  Faults faults;
+  AutopilotFaults faults;
   FailureKind kind;
 };
 
@@ -221,7 +213,7 @@ TEST_F(FlySurvey, ReturnsWhenPlannerTimesOut) {
   launches_ = true;
   options.launch = [&](const std::function<void()>& work) {
     constexpr int second_plan_work = 6;
-    return ++works < second_plan_work ? done_at_once(work) : never.emplace_back().get_future();
+    return ++works < second_plan_work ? run_at_once(work) : never.emplace_back().get_future();
   };
   const FlightEnd end = fly({}, options);
   ASSERT_TRUE(end.failure);
@@ -240,7 +232,7 @@ TEST_F(FlySurvey, ReturnsOnBatteryFailsafe) {
 
 struct GroundedFlight {
   const char* name;
-  Faults faults;
+  AutopilotFaults faults;
   const char* message;
 };
 
@@ -292,8 +284,8 @@ class FlySurveyWithFixedCamera : public testing::Test {
 TEST_F(FlySurveyWithFixedCamera, TurnsTheVehicleAlone) {
   online::LiveSurvey survey = rehearsal_->open(folder_.path() / "survey");
   // The vehicle has no gimbal, and the wind tilts it.
-  TestAutopilot autopilot(rehearsal_->setup().flight(), survey.flight()->pad(),
-                          {.wind_pitch = 0.05, .has_no_gimbal = true});
+  SimulatedAutopilot autopilot(rehearsal_->setup().flight(), survey.flight()->pad(),
+                               {.wind_pitch = 0.05, .has_no_gimbal = true});
   SteppedPort port(autopilot);
   std::vector<double> asked, actual_view;
   const Sensor sensor = [&](const geometry::View& requested, const geometry::View& at,
@@ -303,7 +295,7 @@ TEST_F(FlySurveyWithFixedCamera, TurnsTheVehicleAlone) {
     return rehearsal_->scan(survey);
   };
   FlightOptions options;
-  options.launch = done_at_once;
+  options.launch = run_at_once;
   const FlightEnd end = fly_survey(rehearsal_->setup().flight(), survey, port, sensor, options, {});
   ASSERT_FALSE(end.failure) << end.failure->what;
   EXPECT_TRUE(end.has_landed);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -15,7 +16,7 @@
 #include "flight/clearance/segment_distance.h"
 #include "missions/config/resolve.h"
 #include "missions/online/guided/preflight.h"
-#include "tests/missions/online/guided/test_autopilot.h"
+#include "missions/online/guided/simulated_autopilot.h"
 #include "tests/missions/simulated_mission.h"
 #include "tests/support/not_empty.h"
 
@@ -51,7 +52,7 @@ constexpr double default_jerk = 5.0, heavy_jerk = 2.0;
 /// Port that calls an observer at each time step.
 class WatchedPort : public SteppedPort {
  public:
-  WatchedPort(TestAutopilot& autopilot, std::function<void()> observer)
+  WatchedPort(SimulatedAutopilot& autopilot, std::function<void()> observer)
       : SteppedPort(autopilot), observer_(std::move(observer)) {}
 
   flight::mavlink::Bytes receive(double patience) override {
@@ -63,8 +64,34 @@ class WatchedPort : public SteppedPort {
   std::function<void()> observer_;
 };
 
+/// Stepped port that pauses for a while, as if the program that uses it had been suspended.
+/// Messages of that time then arrive at once.
+class StallingPort : public SteppedPort {
+ public:
+  /// Both times are relative to the take-off [s].
+  StallingPort(SimulatedAutopilot& autopilot, double begin, double duration)
+      : SteppedPort(autopilot), autopilot_(autopilot), begin_(begin), duration_(duration) {}
+
+  flight::mavlink::Bytes receive(double patience) override {
+    const bool is_due = !woken_at_ && autopilot_.has_taken_off() &&
+                        autopilot_.time() - autopilot_.taken_off() >= begin_;
+    if (!is_due) return SteppedPort::receive(patience);
+    flight::mavlink::Bytes heard = SteppedPort::receive(duration_);
+    woken_at_ = autopilot_.position();
+    return heard;
+  }
+
+  /// Returns the position of the vehicle at the end of the pause.
+  const std::optional<Eigen::Vector3d>& woken_at() const { return woken_at_; }
+
+ private:
+  SimulatedAutopilot& autopilot_;
+  double begin_, duration_;
+  std::optional<Eigen::Vector3d> woken_at_;
+};
+
 struct Flight {
-  explicit Flight(const Faults& faults) : autopilot(options(), pad, faults) {}
+  explicit Flight(const AutopilotFaults& faults) : autopilot(options(), pad, faults) {}
 
   /// Takes off and flies the path. Returns the reason if it ended early.
   MaybeFailure fly(flight::mavlink::Port& port, std::stop_token stop) {
@@ -108,7 +135,7 @@ struct Flight {
 
   const flight::Motion motion{options().required_vehicle(), options().route(pad).conditions};
   GuidedLimits limits{.corridor = 1.3, .arrival = 0.3};
-  TestAutopilot autopilot;
+  SimulatedAutopilot autopilot;
   std::unique_ptr<flight::mavlink::AutopilotLink> link;
   std::unique_ptr<GuidedFlight> vehicle;
   bool has_climbed = false;
@@ -116,7 +143,7 @@ struct Flight {
 
 /// Returns the duration of the whole path and back without an interruption, and checks that it is
 /// flown.
-double whole_time(const Faults& faults) {
+double whole_time(const AutopilotFaults& faults) {
   Flight flight(faults);
   SteppedPort port(flight.autopilot);
   const MaybeFailure failure = flight.fly(port, {});
@@ -145,7 +172,7 @@ TEST(GuidedFlight, OvershootsSetPointsOnTestAutopilot) {
 
 struct Kind {
   const char* name;
-  Faults faults;
+  AutopilotFaults faults;
 };
 
 class Interruptions : public testing::TestWithParam<Kind> {};

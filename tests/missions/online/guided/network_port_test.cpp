@@ -1,6 +1,7 @@
 #include "missions/online/guided/network_port.h"
 
 #include <atomic>
+#include <functional>
 #include <string>
 #include <thread>
 
@@ -12,7 +13,7 @@
 #include <unistd.h>
 
 #include "missions/config/resolve.h"
-#include "tests/missions/online/guided/test_autopilot.h"
+#include "missions/online/guided/simulated_autopilot.h"
 #include "tests/missions/run_skycap.h"
 #include "tests/missions/simulated_mission.h"
 #include "tests/support/complaint.h"
@@ -21,6 +22,7 @@ namespace skycap::missions::online {
 namespace {
 
 using flight::mavlink::Bytes;
+using testing::AllOf;
 using testing::HasSubstr;
 using testing_support::thrown_message;
 
@@ -104,6 +106,18 @@ std::string flyable(std::string mission) {
   return mission.insert(mission.find(vehicle) + vehicle.size(), "_ardupilot");
 }
 
+/// Flies in the time of the port and communicates through it until `is_over` returns true.
+void fly_in_real_time(SimulatedAutopilot& autopilot, flight::mavlink::Port& port,
+                      const std::function<bool()>& is_over) {
+  constexpr double listening = 0.02;  ///< [s]
+  for (double last = port.now(); !is_over();) {
+    autopilot.hear(port.receive(listening));
+    const double now = port.now();
+    port.send(autopilot.fly_on(now - last));
+    last = now;
+  }
+}
+
 /// Runs the program over the network and in real time, before the take-off.
 TEST(FlyCommand, ReportsAutopilotMessages) {
   const tests::TestFolder folder;
@@ -112,8 +126,8 @@ TEST(FlyCommand, ReportsAutopilotMessages) {
   const std::string number = std::to_string(free_port());
   std::atomic<bool> is_over = false;
   std::jthread vehicle([&] {
-    TestAutopilot autopilot(config::parse_mission(text, "m.yaml").flight(), {-75.0, 0.0, 0.0},
-                            {.rejects_arming = true});
+    SimulatedAutopilot autopilot(config::parse_mission(text, "m.yaml").flight(), {-75.0, 0.0, 0.0},
+                                 {.rejects_arming = true});
     NetworkPort port(parse_address("udpout:127.0.0.1:" + number));
     fly_in_real_time(autopilot, port, [&] { return is_over.load(); });
   });
@@ -125,6 +139,18 @@ TEST(FlyCommand, ReportsAutopilotMessages) {
               HasSubstr("the autopilot rejected the command to arm (result 4): PreArm: Compass"));
   EXPECT_THAT(run.err, HasSubstr("resume the survey in "));
   EXPECT_EQ(run.out, "");
+}
+
+/// The survey is flown by the simulated autopilot of the program and is complete afterwards.
+TEST(FlyCommand, FliesWithSimulatedAutopilot) {
+  const tests::TestFolder folder;
+  const std::string mission = folder.write("m.yaml", flyable(tests::flight_mission()));
+  const tests::ProgramRun run = tests::run_skycap({"fly", mission, "--survey", folder / "survey",
+                                                   "--connect", "simulated", "--no-report"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, AllOf(HasSubstr("taking off to "), HasSubstr("survey completed\n"),
+                             HasSubstr("returning to the take-off point\n")));
+  EXPECT_THAT(run.out, HasSubstr("verified for every leg"));
 }
 
 TEST(FlyCommand, RejectsUnsupportedMissions) {

@@ -1,8 +1,10 @@
-#include "tests/missions/online/guided/test_autopilot.h"
+#include "missions/online/guided/simulated_autopilot.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <utility>
 
 #include "flight/export/mission_items.h"
 #include "geometry/angle.h"
@@ -36,10 +38,25 @@ double turned(double from, double to, double max) {
   return from + std::clamp(std::remainder(to - from, 2.0 * std::numbers::pi), -max, max);
 }
 
+/// Stepped port with its own autopilot.
+class SimulatedPort : public mavlink::Port {
+ public:
+  SimulatedPort(const flight::FlightOptions& flight, const Vector3d& pad)
+      : autopilot_(flight, pad, {.jerk = flight.required_vehicle().mode.jerk}) {}
+
+  void send(std::span<const std::uint8_t> bytes) override { port_.send(bytes); }
+  Bytes receive(double patience) override { return port_.receive(patience); }
+  double now() const override { return port_.now(); }
+
+ private:
+  SimulatedAutopilot autopilot_;
+  SteppedPort port_{autopilot_};
+};
+
 }  // namespace
 
-TestAutopilot::TestAutopilot(const flight::FlightOptions& flight, const Vector3d& pad,
-                             const Faults& faults)
+SimulatedAutopilot::SimulatedAutopilot(const flight::FlightOptions& flight, const Vector3d& pad,
+                                       const AutopilotFaults& faults)
     : faults_(faults),
       frame_(flight.site.origin, pad),
       motion_(flight.required_vehicle(), flight.route(pad).conditions),
@@ -47,11 +64,11 @@ TestAutopilot::TestAutopilot(const flight::FlightOptions& flight, const Vector3d
       pad_(pad + faults.pad_offset),
       is_armed_(faults.is_armed) {}
 
-bool TestAutopilot::is_past(const std::optional<double>& moment) const {
+bool SimulatedAutopilot::is_past(const std::optional<double>& moment) const {
   return moment && taken_off_ && time_ - *taken_off_ >= *moment;
 }
 
-void TestAutopilot::hear(std::span<const std::uint8_t> bytes) {
+void SimulatedAutopilot::hear(std::span<const std::uint8_t> bytes) {
   std::uniform_real_distribution<double> share(0.0, 1.0);
   if (is_past(faults_.silent) || share(random_) < faults_.lost) return;
   reader_.feed(bytes);
@@ -62,7 +79,7 @@ void TestAutopilot::hear(std::span<const std::uint8_t> bytes) {
   }
 }
 
-void TestAutopilot::obey(const mavlink::CommandLong& command) {
+void SimulatedAutopilot::obey(const mavlink::CommandLong& command) {
   constexpr std::uint16_t set_mode = 176, arm = 400;
   bool is_accepted = true;
   if (command.command == set_mode) {
@@ -92,7 +109,7 @@ void TestAutopilot::obey(const mavlink::CommandLong& command) {
   send_frame(answer);
 }
 
-void TestAutopilot::tell(const mavlink::ParameterRequest& request) {
+void SimulatedAutopilot::tell(const mavlink::ParameterRequest& request) {
   const std::string name(request.parameter.data(), request.parameter.size());
   mavlink::ParameterValue answer;
   answer.parameter = request.parameter;
@@ -106,7 +123,7 @@ void TestAutopilot::tell(const mavlink::ParameterRequest& request) {
   if (faults_.answers_parameters) send_frame(answer);
 }
 
-void TestAutopilot::aim_at(const mavlink::PositionTarget& target) {
+void SimulatedAutopilot::aim_at(const mavlink::PositionTarget& target) {
   const Vector3d vehicle_position =
       frame_.to_mission({1e-7 * target.latitude, 1e-7 * target.longitude, target.height});
   set_points_.push_back(vehicle_position);
@@ -117,7 +134,7 @@ void TestAutopilot::aim_at(const mavlink::PositionTarget& target) {
   target_yaw_ = target.yaw;
 }
 
-flight::SetPoint TestAutopilot::target_point() {
+flight::SetPoint SimulatedAutopilot::target_point() {
   if (mode_ == landing) {
     flight::SetPoint down{vehicle_.position(), {0, 0, -motion_.vehicle().mode.landing_speed}};
     down.position.head<2>() = target_.position.head<2>();
@@ -131,7 +148,7 @@ flight::SetPoint TestAutopilot::target_point() {
   return point;
 }
 
-flight::SetPoint TestAutopilot::shaped(const flight::SetPoint& target_point) {
+flight::SetPoint SimulatedAutopilot::shaped(const flight::SetPoint& target_point) {
   const double jerk = *faults_.jerk, max = motion_.vehicle().mode.acceleration;
   if (!shaped_) shaped_ = flight::SetPoint{vehicle_.position(), vehicle_.velocity()};
   flight::SetPoint& now = *shaped_;
@@ -147,13 +164,13 @@ flight::SetPoint TestAutopilot::shaped(const flight::SetPoint& target_point) {
   return now;
 }
 
-double TestAutopilot::vehicle_pitch() const {
+double SimulatedAutopilot::vehicle_pitch() const {
   constexpr double gravity = 9.80665;
   const double forward = acceleration_.x() * std::sin(yaw_) + acceleration_.y() * std::cos(yaw_);
   return faults_.wind_pitch - std::atan(forward / gravity);
 }
 
-void TestAutopilot::step() {
+void SimulatedAutopilot::step() {
   time_ += step_time;
   if (is_past(faults_.pilot_takes_over)) {
     mode_ = loiter;
@@ -183,7 +200,7 @@ void TestAutopilot::step() {
 }
 
 template <class M>
-void TestAutopilot::send_frame(const M& message) {
+void SimulatedAutopilot::send_frame(const M& message) {
   std::uniform_real_distribution<double> share(0.0, 1.0);
   const std::uint8_t sequence = sequence_++;
   if (is_past(faults_.silent) || share(random_) < faults_.lost) return;
@@ -194,7 +211,7 @@ void TestAutopilot::send_frame(const M& message) {
   if (share(random_) < faults_.late) late_ = frame;  // sent again after the next frame
 }
 
-void TestAutopilot::speak() {
+void SimulatedAutopilot::speak() {
   next_words_ += words_period;
   outgoing_.insert(outgoing_.end(), late_.begin(), late_.end());
   late_.clear();
@@ -238,30 +255,15 @@ void TestAutopilot::speak() {
   send_frame(estimator);
 }
 
-Bytes TestAutopilot::fly_on(double duration) {
+Bytes SimulatedAutopilot::fly_on(double duration) {
   const double end = time_ + duration;
   while (time_ < end) step();
   return std::exchange(outgoing_, {});
 }
 
-Bytes StallingPort::receive(double patience) {
-  const bool is_due = !woken_at_ && autopilot_.has_taken_off() &&
-                      autopilot_.time() - autopilot_.taken_off() >= begin_;
-  if (!is_due) return SteppedPort::receive(patience);
-  Bytes heard = SteppedPort::receive(duration_);
-  woken_at_ = autopilot_.position();
-  return heard;
-}
-
-void fly_in_real_time(TestAutopilot& autopilot, flight::mavlink::Port& port,
-                      const std::function<bool()>& is_over) {
-  constexpr double listening = 0.02;  ///< [s]
-  for (double last = port.now(); !is_over();) {
-    autopilot.hear(port.receive(listening));
-    const double now = port.now();
-    port.send(autopilot.fly_on(now - last));
-    last = now;
-  }
+std::unique_ptr<mavlink::Port> make_simulated_port(const flight::FlightOptions& flight,
+                                                   const Vector3d& pad) {
+  return std::make_unique<SimulatedPort>(flight, pad);
 }
 
 }  // namespace skycap::missions::online

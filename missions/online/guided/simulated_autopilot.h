@@ -1,5 +1,6 @@
-/// Autopilot with ArduCopter's MAVLink interface, which flies the simulated vehicle of fly-test and
-/// has the faults that a test selects. Its time advances only through calls.
+/// Autopilot with ArduCopter's MAVLink interface for `fly --connect simulated` and for tests. It
+/// flies the simulated vehicle of fly-test, with the faults that a test selects. Its time advances
+/// only through calls.
 ///
 /// With a jerk limit, it follows setpoints as ArduCopter does. Limits of acceleration and jerk
 /// shape the setpoints, so the vehicle lags behind them and overshoots the last one
@@ -7,7 +8,7 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
+#include <memory>
 #include <optional>
 #include <random>
 #include <span>
@@ -24,8 +25,8 @@
 
 namespace skycap::missions::online {
 
-/// Faults. Times are relative to the take-off [s]; empty: the fault does not occur.
-struct Faults {
+/// Faults for tests. Times are relative to the take-off [s]; empty: the fault does not occur.
+struct AutopilotFaults {
   /// Fractions of frames, in both directions.
   double lost = 0.0, doubled = 0.0, damaged = 0.0, late = 0.0;
   /// Time after which nothing is sent.
@@ -54,10 +55,10 @@ struct Faults {
   Eigen::Vector3d pad_offset = Eigen::Vector3d::Zero();
 };
 
-class TestAutopilot {
+class SimulatedAutopilot {
  public:
-  TestAutopilot(const flight::FlightOptions& flight, const Eigen::Vector3d& pad,
-                const Faults& faults);
+  SimulatedAutopilot(const flight::FlightOptions& flight, const Eigen::Vector3d& pad,
+                     const AutopilotFaults& faults);
 
   /// Processes received bytes.
   void hear(std::span<const std::uint8_t> bytes);
@@ -90,7 +91,7 @@ class TestAutopilot {
   template <class M>
   void send_frame(const M& message);
 
-  Faults faults_;
+  AutopilotFaults faults_;
   FlightFrame frame_;
   flight::Motion motion_;
   flight::VehicleModel vehicle_;
@@ -115,37 +116,19 @@ class TestAutopilot {
 /// Link in the autopilot's time, which advances while the caller waits.
 class SteppedPort : public flight::mavlink::Port {
  public:
-  explicit SteppedPort(TestAutopilot& autopilot) : autopilot_(autopilot) {}
+  explicit SteppedPort(SimulatedAutopilot& autopilot) : autopilot_(autopilot) {}
 
   void send(std::span<const std::uint8_t> bytes) override { autopilot_.hear(bytes); }
   flight::mavlink::Bytes receive(double patience) override { return autopilot_.fly_on(patience); }
   double now() const override { return autopilot_.time(); }
 
  private:
-  TestAutopilot& autopilot_;
+  SimulatedAutopilot& autopilot_;
 };
 
-/// Stepped port that pauses for a while, as if the program that uses it had been suspended.
-/// Messages of that time then arrive at once.
-class StallingPort : public SteppedPort {
- public:
-  /// Both times are relative to the take-off [s].
-  StallingPort(TestAutopilot& autopilot, double begin, double duration)
-      : SteppedPort(autopilot), autopilot_(autopilot), begin_(begin), duration_(duration) {}
-
-  flight::mavlink::Bytes receive(double patience) override;
-
-  /// Returns the position of the vehicle at the end of the pause.
-  const std::optional<Eigen::Vector3d>& woken_at() const { return woken_at_; }
-
- private:
-  TestAutopilot& autopilot_;
-  double begin_, duration_;
-  std::optional<Eigen::Vector3d> woken_at_;
-};
-
-/// Flies in the time of the port and communicates through it until `is_over` returns true.
-void fly_in_real_time(TestAutopilot& autopilot, flight::mavlink::Port& port,
-                      const std::function<bool()>& is_over);
+/// Returns a link to an autopilot that starts on `pad`, without faults and wind. It follows
+/// setpoints with the jerk limit of the vehicle.
+std::unique_ptr<flight::mavlink::Port> make_simulated_port(const flight::FlightOptions& flight,
+                                                           const Eigen::Vector3d& pad);
 
 }  // namespace skycap::missions::online
