@@ -413,12 +413,12 @@ int report_failure(const Console& console, const std::string& message, int exit_
   return exit_code;
 }
 
-std::string unknown_command_text(const std::string& word, const std::vector<std::string>& known,
-                                 const std::string& commands) {
+/// Returns the remedy for an unknown command.
+std::string command_advice(const std::string& word, const std::vector<std::string>& known,
+                           const std::string& commands) {
   std::string similar = support::find_similar(word, known);
   if (word == "help" || word == "version") similar = "--" + word;
-  return "unknown command '" + word + "'; " +
-         (similar.empty() ? "expected one of: " + commands : "did you mean '" + similar + "'?");
+  return similar.empty() ? "expected one of: " + commands : "did you mean '" + similar + "'?";
 }
 
 /// Returns the message for arguments that are not expected. It suggests the most similar option of
@@ -490,7 +490,8 @@ int parse_and_run(const std::vector<std::string>& arguments, Console console) {
     }
     if (!arguments.empty() && !arguments[0].starts_with('-') &&
         std::ranges::find(known, arguments[0]) == known.end()) {
-      throw Error(ErrorKind::bad_usage, unknown_command_text(arguments[0], known, commands));
+      throw Error(ErrorKind::bad_usage, "unknown command '" + arguments[0] + "'; " +
+                                            command_advice(arguments[0], known, commands));
     }
     std::vector<std::string> reversed = with_current_options(arguments, console);
     std::ranges::reverse(reversed);  // CLI11 expects reversed arguments

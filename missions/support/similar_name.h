@@ -12,8 +12,8 @@ namespace skycap::missions::support {
 /// (optimal string alignment distance).
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
-/// Returns the name that is most similar to `word`, or an empty string if each name differs in more
-/// than a quarter of the characters of `word` and in more than one.
+/// Returns the name that is most similar to `word`. It may differ in one character, or in a quarter
+/// of the characters of `word`. Returns an empty string if no name is that similar.
 std::string find_similar(std::string_view word, std::span<const std::string> names);
 
 }  // namespace skycap::missions::support

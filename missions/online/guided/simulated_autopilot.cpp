@@ -38,18 +38,29 @@ double turned(double from, double to, double max) {
   return from + std::clamp(std::remainder(to - from, 2.0 * std::numbers::pi), -max, max);
 }
 
-/// Stepped port with its own autopilot.
+/// Stepped port with its own autopilot. A simulated pilot takes control of a vehicle that has not
+/// moved for two minutes, because `fly` otherwise holds the position without end after a failure.
 class SimulatedPort : public mavlink::Port {
  public:
   SimulatedPort(const flight::FlightOptions& flight, const Vector3d& pad)
-      : autopilot_(flight, pad, {.jerk = flight.required_vehicle().mode.jerk}) {}
+      : autopilot_(flight, pad, {}), last_position_(pad) {}
 
   void send(std::span<const std::uint8_t> bytes) override { port_.send(bytes); }
-  Bytes receive(double patience) override { return port_.receive(patience); }
+  Bytes receive(double patience) override {
+    constexpr double movement = 0.3, pilots_patience = 120.0;  // [m], [s]
+    if ((autopilot_.position() - last_position_).norm() > movement) {
+      last_position_ = autopilot_.position();
+      last_movement_ = now();
+    }
+    if (now() - last_movement_ > pilots_patience) autopilot_.take_over();
+    return port_.receive(patience);
+  }
   double now() const override { return port_.now(); }
 
  private:
   SimulatedAutopilot autopilot_;
+  Vector3d last_position_;
+  double last_movement_ = 0.0;
   SteppedPort port_{autopilot_};
 };
 
@@ -63,6 +74,8 @@ SimulatedAutopilot::SimulatedAutopilot(const flight::FlightOptions& flight, cons
       vehicle_(motion_, pad + faults.pad_offset),
       pad_(pad + faults.pad_offset),
       is_armed_(faults.is_armed) {}
+
+void SimulatedAutopilot::take_over() { mode_ = loiter; }
 
 bool SimulatedAutopilot::is_past(const std::optional<double>& moment) const {
   return moment && taken_off_ && time_ - *taken_off_ >= *moment;

@@ -66,6 +66,8 @@ class SimulatedAutopilot {
   /// Advances the flight by `duration` [s] and returns the bytes sent meanwhile.
   flight::mavlink::Bytes fly_on(double duration);
 
+  void take_over();  ///< A pilot selects the mode LOITER.
+
   double time() const { return time_; }
   double taken_off() const { return taken_off_.value(); }  ///< time of the take-off
   bool has_taken_off() const { return taken_off_.has_value(); }
@@ -126,8 +128,7 @@ class SteppedPort : public flight::mavlink::Port {
   SimulatedAutopilot& autopilot_;
 };
 
-/// Returns a link to an autopilot that starts on `pad`, without faults and wind. It follows
-/// setpoints with the jerk limit of the vehicle.
+/// Returns a link to an autopilot that starts on `pad`, without faults and wind.
 std::unique_ptr<flight::mavlink::Port> make_simulated_port(const flight::FlightOptions& flight,
                                                            const Eigen::Vector3d& pad);
 

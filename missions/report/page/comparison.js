@@ -135,7 +135,8 @@ function interval_chart(cells, { key, name, form }) {
     { type: "line", label: "mean", data: known.map(({ cell }) => scale * cell[key].mean), showLine: false, pointStyle: "circle", pointRadius: 5, pointBackgroundColor: colours, borderColor: "#17212b" },
     { type: "line", label: "paper", data: known.map(({ cell }) => (typeof cell[key].paper === "number" ? scale * cell[key].paper : null)), showLine: false, pointRadius: 6, pointStyle: "crossRot", borderColor: "#17212b" }];
   const has_paper = known.some(({ cell }) => typeof cell[key].paper === "number");
-  return chart(name[0].toUpperCase() + name.slice(1), null, "bar", has_paper ? sets : sets.slice(0, 2),
+  const few = known.some(({ cell }) => cell.trials < 5);
+  return chart(name[0].toUpperCase() + name.slice(1), few ? "Fewer than 5 trials: the intervals are wide and uncertain." : null, "bar", has_paper ? sets : sets.slice(0, 2),
     { labels: known.map(({ cell }) => title_of(cell)), y: { share: "%", metres: "m", minutes: "min", seconds: "s" }[form] || name, is_free: true,
       y_more: form === "seconds" ? { type: "logarithmic" } : {} });
 }

@@ -127,9 +127,9 @@ bool check(const std::filesystem::path& folder) {
               .value();
       const double printed = part.at("coverage_visible").get<double>();
       const bool is_equal = std::abs(again - printed) <= max_difference;
-      std::printf("%s%s: %zu captures, printed %.2f%%, re-flown %.2f%%%s\n", folder.filename().c_str(),
-                  extension.c_str(), views.size(), 100.0 * printed, 100.0 * again,
-                  is_equal ? "" : ": DIFFERENT");
+      std::printf("%s%s: %zu captures, printed %.2f%%, re-flown %.2f%%%s\n",
+                  folder.filename().c_str(), extension.c_str(), views.size(), 100.0 * printed,
+                  100.0 * again, is_equal ? "" : ": DIFFERENT");
       is_fine = is_fine && is_equal;
     }
   }
