@@ -22,6 +22,7 @@
 #include "missions/online/guided/sensors.h"
 #include "missions/online/guided/simulated_autopilot.h"
 #include "missions/online/live/answer.h"
+#include "missions/online/live/live_status.h"
 #include "missions/online/live/scan_input.h"
 #include "missions/online/live/server.h"
 #include "missions/online/recordings/recording.h"
@@ -333,12 +334,24 @@ int serve(const ServeOptions& options, const Console& console) {
     exit_code = finished.has_route ? 0 : 1;
     return std::move(finished.text);
   };
-  online::Session session(setup.name, setup.flight(), setup.live, *survey, finish_survey,
-                          [&] { show_survey(options, setup, *survey, console); });
+  online::LiveStatus status(options.survey, setup.flight());
+  const auto update = [&] {
+    if (!survey->views().empty()) status.set_vehicle(survey->views().back().view, {});
+    status.set_survey(*survey);
+  };
+  update();
+  online::Session session(
+      setup.name, setup.flight(), setup.live, *survey, finish_survey,
+      [&] {
+        update();
+        show_survey(options, setup, *survey, console);
+      },
+      [&] { return status.is_held(); });
   const PendingResultsGuard results(console);
   online::Server server({.socket = options.socket.value_or(""), .port = options.port});
   console.out << server.address() << "\n" << std::flush;
   const auto note = [&](const std::string& text) {
+    status.set_action(text);
     if (!options.is_quiet) console.err << printable_line(text) << "\n" << std::flush;
   };
   server.run(session, note, console.stop);
@@ -398,8 +411,18 @@ int fly_live(const FlyOptions& options, const Console& console) {
   const PendingResultsGuard results(console);
   online::FlightOptions flight;
   flight.returns_on_failure = options.on_failure == "return";
-  flight.show = [&] { show_survey(options, setup, *survey, console); };
+  online::LiveStatus status(options.survey, setup.flight());
+  status.set_survey(*survey);
+  flight.show = [&] {
+    status.set_survey(*survey);
+    show_survey(options, setup, *survey, console);
+  };
+  flight.observer.is_held = [&] { return status.is_held(); };
+  flight.observer.track = [&](const geometry::View& view, std::optional<double> battery) {
+    status.set_vehicle(view, battery);
+  };
   flight.note = [&](const std::string& text) {
+    status.set_action(text);
     if (!options.is_quiet) console.err << printable_line(text) << "\n" << std::flush;
   };
   if (is_simulated) flight.launch = online::run_at_once;

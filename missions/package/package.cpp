@@ -286,7 +286,9 @@ CoverageFigures coverage_figures(const evaluation::SimulationOptions& options,
 
 void commit_package(const session::SurveyRecord& record, geometry::OutputFolder& folder) {
   if (record.stop_reason != survey::StopReason::interrupted) {
-    folder.replace([](std::string_view name) { return name == simulation::journal_name; });
+    folder.replace([](std::string_view name) {
+      return name == simulation::journal_name || name == simulation::preview_name;
+    });
   } else if (is_complete_result(folder.path() / summary_name)) {
     folder.move_to("interrupted");
   }

@@ -4,9 +4,14 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "geometry/io/cloud_io.h"
+#include "geometry/io/cloud_sample.h"
+#include "geometry/io/file.h"
 #include "missions/report/page.h"
 #include "missions/report/point_figures.h"
 #include "missions/report/results.h"
@@ -58,10 +63,33 @@ Palette make_palette(const std::vector<Colour>& colours) {
   }
 }
 
+/// Reads a large LAS or LAZ file in part, because only default_report_points are shown.
+geometry::CloudSample read_sample(const std::filesystem::path& file) {
+  const std::string extension = geometry::lower_extension(file);
+  if (extension == ".las" || extension == ".laz") {
+    return geometry::sample_las_cloud(file, default_report_points);
+  }
+  geometry::CloudSample sample{.cloud = geometry::read_cloud(file)};
+  sample.of = sample.cloud.positions.size();
+  return sample;
+}
+
+Json sample_facts(const geometry::CloudSample& sample) {
+  const std::size_t read = sample.cloud.positions.size();
+  Json facts = Json::array({support::counted(sample.of, "point")});
+  if (read < sample.of) facts.push_back("sample of " + support::counted(read, "point"));
+  if (!sample.offset.isZero()) {
+    facts.push_back(fmt::format("coordinates minus {:.0f}, {:.0f} m", sample.offset.x(),
+                                sample.offset.y()));
+  }
+  return facts;
+}
+
 }  // namespace
 
 std::string cloud_page(const std::filesystem::path& file) {
-  const geometry::AttributedCloud cloud = geometry::read_cloud(file);
+  const geometry::CloudSample sample = read_sample(file);
+  const geometry::AttributedCloud& cloud = sample.cloud;
   const std::vector<std::uint16_t> views = view_numbers(cloud);
   std::vector<CloudAttribute> attributes;
   if (!views.empty()) attributes.push_back({"view", views});
@@ -70,10 +98,11 @@ std::string cloud_page(const std::filesystem::path& file) {
   const std::string name = file.filename().string();
   const Json data = {{"kind", "cloud"},
                      {"title", name},
-                     {"facts", {support::counted(cloud.positions.size(), "point")}},
+                     {"facts", sample_facts(sample)},
                      {"palette", palette.colours}};
-  return page_text(
-      name, data, {{"measured", encode_cloud(cloud.positions, attributes, default_report_points)}});
+  CloudCode code = encode_cloud(cloud.positions, attributes, default_report_points);
+  code.of = sample.of;  // for densities
+  return page_text(name, data, {{"measured", std::move(code)}});
 }
 
 std::string coloured_points_page(const std::string& title, const std::vector<std::string>& facts,

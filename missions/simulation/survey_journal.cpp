@@ -1,6 +1,7 @@
 #include "missions/simulation/survey_journal.h"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <utility>
 
@@ -76,7 +77,8 @@ SurveyJournal::ViewRecord SurveyJournal::parse(const std::string& text) const {
   return record;
 }
 
-void SurveyJournal::attach(survey::SurveyCallbacks& callbacks, session::SurveyFlight* flight) {
+void SurveyJournal::attach(survey::SurveyCallbacks& callbacks, session::SurveyFlight* flight,
+                           const survey::Planner& planner) {
   callbacks.sense = [this, sense = std::move(callbacks.sense)](const geometry::View& view,
                                                                geometry::Scan buffer) {
     begin_view(view);
@@ -85,9 +87,10 @@ void SurveyJournal::attach(survey::SurveyCallbacks& callbacks, session::SurveyFl
   if (callbacks.can_reach) {
     callbacks.can_reach = reach_.remembering(std::move(callbacks.can_reach), flight);
   }
-  callbacks.report = [this, report = std::move(callbacks.report)](const survey::SurveyedView& view,
-                                                                  const geometry::Scan& scan) {
+  callbacks.report = [this, &planner, report = std::move(callbacks.report)](
+                         const survey::SurveyedView& view, const geometry::Scan& scan) {
     end_view(view);
+    if (!is_known()) write_preview(planner.cloud().positions);
     if (report) report(view, scan);
   };
 }
@@ -119,6 +122,30 @@ void SurveyJournal::end_view(const survey::SurveyedView& view) {
          " has different points; start again without --resume");
   }
   ++at_;
+}
+
+void SurveyJournal::write_preview(std::span<const Eigen::Vector3f> cloud) {
+  const bool is_new = !preview_;
+  if (is_new) {
+    preview_.emplace(std::filesystem::path(file_).replace_filename(preview_name));
+  }
+  const std::size_t old_stride = preview_stride_;
+  while (cloud.size() > preview_stride_ * max_preview_points) preview_stride_ *= 2;
+  if (is_new || preview_stride_ != old_stride) {
+    preview_->clear();
+    preview_->append(Json{{"stride", preview_stride_}}.dump());
+    previewed_ = 0;
+  }
+  Json positions = Json::array();
+  const std::size_t first =
+      (previewed_ + preview_stride_ - 1) / preview_stride_ * preview_stride_;
+  for (std::size_t i = first; i < cloud.size(); i += preview_stride_) {
+    for (const float coordinate : cloud[i]) {
+      positions.push_back(std::lround(1000.0 * static_cast<double>(coordinate)));
+    }
+  }
+  preview_->append(positions.dump());
+  previewed_ = cloud.size();
 }
 
 void SurveyJournal::fail(const std::string& what) const {

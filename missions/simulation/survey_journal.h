@@ -5,13 +5,21 @@
 /// describes a view: its pose, the numbers of measured and added points, and the path to the next
 /// view. Scans are not stored: the simulated sensor reproduces them, and the planner reproduces its
 /// plans, which is checked for each view. Paths are not planned again.
+///
+/// A second file contains a preview of the measured points for programs that show the survey while
+/// it is planned. Its first record contains the number `stride`, and each further record the points
+/// of a view: every `stride`-th point of the planner's cloud, in millimetres. The stride is doubled,
+/// and the file is rewritten, before the preview exceeds `max_preview_points`.
 #pragma once
 
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "geometry/io/record_log.h"
 #include "missions/evaluation/survey_scene.h"
@@ -24,6 +32,9 @@ namespace skycap::missions::simulation {
 
 /// File name in the results folder. The file is removed at the end of the survey.
 inline constexpr const char* journal_name = "survey.journal";
+/// File name of the preview. The file is removed together with the journal.
+inline constexpr const char* preview_name = "survey.points";
+inline constexpr std::size_t max_preview_points = 100'000;
 
 class SurveyJournal {
  public:
@@ -37,9 +48,10 @@ class SurveyJournal {
   std::size_t views() const { return known_.size(); }
 
   /// Modifies the ports so that the survey replays the recorded views and records all later ones.
-  /// `flight` may be null. `callbacks` and `flight` must outlive the survey. The ports then throw
+  /// `flight` may be null. All arguments must outlive the survey. The ports then throw
   /// Error{bad_file} if the survey deviates from the file or the file cannot be written.
-  void attach(survey::SurveyCallbacks& callbacks, session::SurveyFlight* flight);
+  void attach(survey::SurveyCallbacks& callbacks, session::SurveyFlight* flight,
+              const survey::Planner& planner);
 
  private:
   /// View and its results.
@@ -56,11 +68,15 @@ class SurveyJournal {
   bool is_known() const { return at_ < known_.size(); }
   void begin_view(const geometry::View& view);
   void end_view(const survey::SurveyedView& view);
+  void write_preview(std::span<const Eigen::Vector3f> cloud);
   [[noreturn]] void fail(const std::string& what) const;
 
   std::filesystem::path file_;
   std::string identity_;  ///< First record of the journal.
   std::optional<geometry::RecordLog> log_;
+  std::optional<geometry::RecordLog> preview_;
+  std::size_t preview_stride_ = 1;
+  std::size_t previewed_ = 0;  ///< Number of points of the cloud that the preview represents.
   std::vector<ViewRecord> known_;
   std::size_t at_ = 0;  ///< Index of the current view.
   ViewRecord current_;

@@ -104,7 +104,7 @@ session::SurveyRecord run_survey(const evaluation::SimulationOptions& options,
     record.views.push_back({view, meter.share()});
     if (report) report(record.views.back());
   };
-  if (journal != nullptr) journal->attach(callbacks, guided.flight());
+  if (journal != nullptr) journal->attach(callbacks, guided.flight(), guided.planner());
   record.stop_reason =
       survey::run_survey(guided.planner(), first_view, guided.limits(), callbacks, std::move(stop))
           .stop_reason;

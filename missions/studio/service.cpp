@@ -4,7 +4,10 @@
 //     GET  /api/state               folder, file to open, tokens, jobs
 //     GET  /api/files               files of the work folder
 //     GET  /api/package?path=       files of a results folder
-//     GET  /api/progress?path=&from= views of a survey that is being planned, from its journal
+//     GET  /api/progress?path=&from=&points=&stride= views and points of a survey that is being
+//     planned, from its journal and preview
+//     GET  /api/live?path=          status of a running live survey, and whether it is held
+//     POST /api/live {path, held}   holds or resumes a live survey
 //     GET  /api/schema              JSON Schema of mission files
 //     GET  /api/mission?path=       text, version and values; version= : nothing if unchanged
 //     POST /api/edit                {text, key, value}: text with the key set, and its values
@@ -22,6 +25,7 @@
 #include <array>
 #include <charconv>
 #include <chrono>
+#include <cstdint>
 #include <string_view>
 #include <utility>
 
@@ -32,6 +36,7 @@
 #include "geometry/io/json.h"
 #include "geometry/io/record_log.h"
 #include "missions/config/mission_keys.h"
+#include "missions/online/live/live_status.h"
 #include "missions/simulation/survey_journal.h"
 #include "missions/studio/command_table.h"
 #include "missions/studio/mission_edit.h"
@@ -104,18 +109,22 @@ Json mission_json(const VersionedText& mission, const std::string& name) {
   return json;
 }
 
+/// Reads the records of a file of at most 64 MiB.
+std::vector<std::string> read_progress(const fs::path& file) {
+  constexpr std::uintmax_t max_bytes = std::uintmax_t{64} << 20;
+  std::error_code ignored;
+  if (fs::is_regular_file(file, ignored) && fs::file_size(file, ignored) > max_bytes) {
+    throw Error(ErrorKind::bad_file, file.string() + ": has more than 64 MiB");
+  }
+  return geometry::read_records(file).records;
+}
+
 /// Views in the journal of an interrupted or running survey, at most 500. There is no journal
 /// before the first view and after the end.
 Json survey_progress(const fs::path& results, std::size_t from) {
   constexpr std::size_t max_views = 500;
-  constexpr std::uintmax_t max_journal = std::uintmax_t{64} << 20;  // [byte]
   Json views = Json::array();
-  const fs::path file = results / simulation::journal_name;
-  std::error_code ignored;
-  if (fs::is_regular_file(file, ignored) && fs::file_size(file, ignored) > max_journal) {
-    throw Error(ErrorKind::bad_file, file.string() + ": has more than 64 MiB");
-  }
-  const std::vector<std::string> records = geometry::read_records(file).records;
+  const std::vector<std::string> records = read_progress(results / simulation::journal_name);
   // The first record identifies the survey.
   for (std::size_t i = from + 1; i < records.size() && views.size() < max_views; ++i) {
     const Json record = geometry::parse_json<Json>(records[i]);
@@ -124,6 +133,38 @@ Json survey_progress(const fs::path& results, std::size_t from) {
                      {"points", record.at("points")}});
   }
   return {{"from", from}, {"views", std::move(views)}};
+}
+
+/// Points in the preview of a survey that is being planned, in millimetres, from number `from` on.
+/// All points if the stride has changed, and none if there is no preview.
+Json survey_points(const fs::path& results, std::size_t from, std::size_t stride) {
+  const std::vector<std::string> records = read_progress(results / simulation::preview_name);
+  Json points = Json::array();
+  if (records.empty()) return {{"stride", 0}, {"from", 0}, {"points", std::move(points)}};
+  const auto present = geometry::parse_json<Json>(records[0]).at("stride").get<std::size_t>();
+  if (present != stride) from = 0;
+  std::size_t number = 0;
+  for (std::size_t i = 1; i < records.size(); ++i) {
+    const auto record = geometry::parse_json<Json>(records[i]).get<std::vector<std::int64_t>>();
+    for (std::size_t k = 0; k + 3 <= record.size(); k += 3, ++number) {
+      if (number < from || number >= simulation::max_preview_points) continue;
+      for (std::size_t axis = 0; axis < 3; ++axis) points.push_back(record[k + axis]);
+    }
+  }
+  return {{"stride", present}, {"from", from}, {"points", std::move(points)}};
+}
+
+/// Status of a live survey. A status file that is not written any more belongs to a killed program.
+Json live_status(const WorkFolder& folder, const std::string& survey) {
+  constexpr std::size_t max_status = std::size_t{1} << 20;
+  constexpr std::chrono::seconds max_age(5);
+  std::error_code failure;
+  const fs::path file = folder.resolve(survey + "/" + online::status_name);
+  const auto written = fs::last_write_time(file, failure);
+  const bool is_running = !failure && fs::file_time_type::clock::now() - written < max_age;
+  Json json{{"running", is_running}, {"hold", fs::exists(folder.resolve(survey + "/" + online::hold_name))}};
+  if (is_running) json["status"] = geometry::parse_json<Json>(geometry::read_file(file, max_status));
+  return json;
 }
 
 std::string find_query(const HttpRequest& request, const std::string& name) {
@@ -256,11 +297,19 @@ HttpAnswer Service::answer_get(const std::string& path, const HttpRequest& reque
   if (path == "/api/package")
     return json_answer({{"files", to_json(folder_.list_package(find_query(request, "path")))}});
   if (path == "/api/progress") {
-    const std::optional<int> from = to_number<int>(find_query(request, "from"));
     const fs::path results = folder_.resolve(find_query(request, "path"));
     if (!fs::is_directory(results)) return not_found();
-    return json_answer(
-        survey_progress(results, static_cast<std::size_t>(std::max(0, from.value_or(0)))));
+    const auto number = [&](const char* name) {
+      return to_number<std::size_t>(find_query(request, name)).value_or(0);
+    };
+    Json progress = survey_progress(results, number("from"));
+    progress["preview"] = survey_points(results, number("points"), number("stride"));
+    return json_answer(progress);
+  }
+  if (path == "/api/live") {
+    const std::string survey = find_query(request, "path");
+    require_live(survey);
+    return json_answer(live_status(folder_, survey));
   }
   if (path == "/api/schema") return {.body = config::mission_json_schema()};
   if (path == "/api/mission") {
@@ -319,6 +368,17 @@ HttpAnswer Service::answer_post(const std::string& path, const HttpRequest& requ
     return json_answer(to_json(job->state(0)));
   }
   const Json json = Json::parse(request.body);
+  if (path == "/api/live") {
+    const std::string survey = text_of(json, "path");
+    require_live(survey);
+    const fs::path hold = folder_.resolve(survey + "/" + online::hold_name);
+    if (json.at("held").get<bool>()) {
+      geometry::write_file(hold, "The survey is held. Remove this file to resume it.\n");
+    } else {
+      fs::remove(hold);
+    }
+    return json_answer(live_status(folder_, survey));
+  }
   if (path == "/api/edit") {
     std::string text = text_of(json, "text");
     const std::string key = text_of(json, "key");
@@ -336,6 +396,11 @@ HttpAnswer Service::answer_post(const std::string& path, const HttpRequest& requ
     }
   }
   return not_found();
+}
+
+void Service::require_live(const std::string& name) const {
+  if (!fs::is_regular_file(folder_.resolve(name) / online::live_journal_name))
+    throw Error(ErrorKind::bad_usage, name + ": contains no live survey");
 }
 
 HttpAnswer Service::answer_upload(const std::string& path, const HttpRequest& request) {

@@ -37,6 +37,8 @@ class Service : public RequestHandler {
   HttpAnswer answer_file(const std::string& path, const HttpRequest& request) const;
   HttpAnswer answer_get(const std::string& path, const HttpRequest& request);
   HttpAnswer answer_post(const std::string& path, const HttpRequest& request);
+  /// Throws Error{bad_usage} if the folder contains no live survey.
+  void require_live(const std::string& name) const;
   HttpAnswer answer_upload(const std::string& path, const HttpRequest& request);
   HttpAnswer start_job(const std::string& body);
   HttpAnswer stream_job(const std::shared_ptr<Job>& job);

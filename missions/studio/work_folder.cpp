@@ -7,6 +7,7 @@
 
 #include "geometry/error.h"
 #include "geometry/io/file.h"
+#include "missions/online/live/live_status.h"
 #include "missions/support/sha256.h"
 
 namespace skycap::missions::studio {
@@ -37,11 +38,13 @@ std::string compute_version(const std::string& text) {
 
 bool is_hidden(const fs::path& file) { return file.filename().string().starts_with('.'); }
 
-bool is_package(const fs::path& folder) {
-  std::error_code ignored;
-  // A live survey in progress has a journal and a report that reloads itself.
-  return std::ranges::any_of(std::array{"summary.json", "scan.json", "live.journal"},
-                             [&](const char* name) { return fs::exists(folder / name, ignored); });
+std::string find_folder_kind(const fs::path& folder) {
+  const auto has = [&](const char* name) {
+    std::error_code ignored;
+    return fs::exists(folder / name, ignored);
+  };
+  if (has("summary.json") || has("scan.json")) return "package";
+  return has(online::live_journal_name) ? "live" : "";
 }
 
 bool is_within(const fs::path& path, const fs::path& folder) {
@@ -101,8 +104,8 @@ Listing WorkFolder::list() const {
     const bool is_folder = at->is_directory(ignored) && !at->is_symlink(ignored);
     if (is_hidden(path) || at.depth() >= max_depth) at.disable_recursion_pending();
     if (is_hidden(path)) continue;
-    std::string kind = is_folder ? (is_package(path) ? "package" : "") : find_kind(path);
-    if (kind == "package") at.disable_recursion_pending();
+    std::string kind = is_folder ? find_folder_kind(path) : find_kind(path);
+    if (is_folder && !kind.empty()) at.disable_recursion_pending();
     if (++visited > 10 * max_listed || listing.files.size() >= max_listed) {
       listing.is_complete = false;
       break;

@@ -10,7 +10,7 @@ namespace skycap::missions::studio {
 /// File or results folder that the page lists.
 struct ListedFile {
   std::string path;  ///< relative to the work folder
-  std::string kind;  ///< mission, map, model, cloud, image or package
+  std::string kind;  ///< mission, map, model, cloud, image, package or live
   std::uintmax_t bytes = 0;
 };
 

@@ -1,11 +1,14 @@
 """Tests skycap studio with real clicks in a browser: from a city model tile to an exported flight."""
 
+import concurrent.futures
 import json
 import os
 import pathlib
 import shutil
 import signal
+import struct
 import subprocess
+import sys
 import tempfile
 import unittest
 import urllib.request
@@ -13,6 +16,9 @@ import zipfile
 
 from accessibility import AXE, audit
 from chromium import CHROMIUM, DRIVER, FLAGS, MISSION, main, run  # skips without selenium
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "clients"))
+import skycap_live
 
 from selenium import webdriver
 from selenium.common.exceptions import StaleElementReferenceException
@@ -410,6 +416,18 @@ class StudioTest(unittest.TestCase):
                 shown = studio.wait(f"#view-editor input[data-name={name}]").get_attribute("value")
                 self.assertAlmostEqual(float(shown), value, delta=0.006)
 
+    def test_explains_why_inspections_and_fleets_cannot_be_edited(self):
+        for name, summary in (("tower", {"kind": "inspection"}), ("fleet", {"flight": {"fleet": {"vehicles": [{}]}}})):
+            (self.folder / name).mkdir()
+            (self.folder / name / "summary.json").write_text(json.dumps(summary))
+            (self.folder / name / "report.html").write_text("<title>report</title>")
+        studio = self.start("")
+        for name, words in (("tower", "Inspection flights are continuous"), ("fleet", "Flights of several vehicles")):
+            studio.click("nav button[data-step=files]")
+            studio.click(studio.button(name))
+            studio.click("#edit-views")
+            studio.wait_for(lambda: words in studio.message())
+
     def test_shows_the_survey_while_it_is_planned(self):
         shutil.copy("missions/radcliffe_camera.yaml", self.folder / "mission.yaml")
         studio = self.start("mission.yaml")
@@ -420,11 +438,58 @@ class StudioTest(unittest.TestCase):
         early = count()
         studio.wait_for(lambda: count() > early)
         self.assertIn("points", studio.wait("#growth").text)
+        # The measured points appear, too, and grow with the views.
+        points = lambda: int(frame.get_attribute("data-points") or 0)
+        shown = points()
+        self.assertGreater(shown, 1000)
+        self.assertLessEqual(shown, 100_000)
+        studio.wait_for(lambda: points() > shown)
+        drawn = studio.canvas(".drawing iframe", lambda _: studio.browser.execute_script(
+            "const { layers } = window.panel.viewer;"
+            "return [layers.survey.geometry.getAttribute('position').count, layers.survey.visible, layers.measured.visible];"))
+        self.assertGreater(drawn[0], shown)
+        self.assertEqual(drawn[1:], [True, False])
         studio.picture("15_growth")
         studio.click("nav button[data-step=run]")
         studio.click(next(one for one in studio.browser.find_elements(By.CSS_SELECTOR, ".job[data-running=true] button")
                           if one.is_displayed()))
         studio.wait_for(lambda: not [job for job in studio.api("state")["jobs"] if job["running"]])
+
+    def test_shows_and_holds_a_live_survey(self):
+        (self.folder / "mission.yaml").write_text(MISSION % "pot")
+        server = subprocess.Popen(
+            [os.environ["PROGRAM"], "serve", str(self.folder / "mission.yaml"), "--survey", str(self.folder / "live"),
+             "--port", "0"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        self.addCleanup(lambda: (server.terminate(), server.wait(PATIENCE), server.stdout.close()))
+        client = skycap_live.Survey(server.stdout.readline().strip())
+        self.addCleanup(lambda: client.__exit__())
+        first = client.next()["view"]
+        studio = self.start("")
+        studio.click(studio.button("live"))
+        studio.wait("#live-state[data-state=running]")
+        depth = [8000 if 50 < i % 160 < 110 and 30 < i // 160 < 75 else 0 for i in range(160 * 100)]
+        scan = lambda: client.add_depth(struct.pack("<16000H", *depth), 160, 100, 0.001,
+                                        first["position"] + first["quaternion_xyzw"])
+        studio.click("#hold")
+        studio.wait("#live-state[data-state=held]")
+        self.assertTrue((self.folder / "live/live.hold").exists())
+        with concurrent.futures.ThreadPoolExecutor() as background:
+            answer = background.submit(scan)
+            # The next leg is shown before the client receives it.
+            frame = studio.wait("#live iframe[data-ready=true]")
+            studio.wait_for(lambda: "collision-free" in studio.wait("#live table").text)
+            studio.wait_for(lambda: frame.get_attribute("data-objects") == "3")  # leg, view and vehicle
+            self.assertFalse(answer.done())
+            studio.picture("18_held")
+            studio.click("#resume")
+            self.assertEqual(answer.result(PATIENCE)["state"], "view")
+        studio.wait("#live-state[data-state=running]")
+        self.assertFalse((self.folder / "live/live.hold").exists())
+        texts = audit(self, studio.browser, "live")
+        print(f"{texts} texts checked")
+        studio.picture("19_live")
+        server.terminate()
+        studio.wait("#live-state[data-state=ended]")
 
     def test_compares_variants(self):
         (self.folder / "mission.yaml").write_text(MISSION % "pot")
@@ -547,7 +612,7 @@ class StudioTest(unittest.TestCase):
     def test_fits_a_small_screen(self):
         (self.folder / "mission.yaml").write_text(MISSION % "pot")
         studio = self.start("mission.yaml")
-        for step in ("files", "site", "mission", "run", "results"):
+        for step in ("files", "site", "mission", "run", "results", "live"):
             studio.click(f"nav button[data-step={step}]")
             wide = studio.browser.execute_script("return document.documentElement.scrollWidth > innerWidth")
             self.assertFalse(wide, step)

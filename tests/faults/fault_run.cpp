@@ -50,7 +50,7 @@ std::string without_times(const std::string& name, const std::string& text) {
 }
 
 /// Files from which an interrupted survey or scan resumes.
-constexpr std::array journals{"survey.journal", "unfinished"};
+constexpr std::array journals{"survey.journal", "survey.points", "unfinished"};
 
 /// Runs `change` in a copy of the old folder.
 int changed(const Trial& trial, const fs::path& out, const Fault& fault) {

@@ -155,7 +155,7 @@ Modules architecture() {
   add_library({"api"}, {"sim", "survey", "flight"},
               {"package", "config", "scan", "simulation", "evaluation", "session", "scene",
                "site_data", "support"});
-  add_library({"studio"}, {}, {"config", "simulation", "support"});
+  add_library({"studio"}, {}, {"config", "online", "simulation", "support"});
   add_library({"cli", "cli/clouds"}, {"sim", "survey", "flight"},
               {"studio", "report", "batch", "photo", "inspection", "comparison", "wizard",
                "package", "config", "online", "scan", "simulation", "evaluation", "session",

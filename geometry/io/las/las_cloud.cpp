@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "geometry/io/cloud_parsers.h"
+#include "geometry/io/cloud_sample.h"
 #include "geometry/io/las/las_reader.h"
 
 namespace skycap::geometry {
@@ -38,6 +39,32 @@ AttributedCloud read_las_cloud(const std::filesystem::path& path) {
   }
   cloud.colours = to_bytes(colours);
   return cloud;
+}
+
+CloudSample sample_las_cloud(const std::filesystem::path& path, std::size_t max_points) {
+  LasReader reader(path);
+  CloudSample sample;
+  sample.of = reader.header().points;
+  const double fraction =
+      std::min(1.0, static_cast<double>(max_points) / static_cast<double>(sample.of));
+  LasPoints points;
+  std::vector<std::array<std::uint16_t, 3>> colours;
+  while (reader.next_sample(points, fraction)) {
+    if (points.positions.empty()) continue;
+    if (sample.cloud.positions.empty() &&
+        points.positions.front().cwiseAbs().maxCoeff() > farthest_single_coordinate) {
+      constexpr double unit = 1000.0;  // [m]
+      sample.offset = (points.positions.front() / unit).array().floor() * unit;
+      sample.offset.z() = 0.0;
+    }
+    for (Eigen::Vector3d& position : points.positions) position -= sample.offset;
+    add_positions(path, sample.cloud.positions.size(), points.positions, sample.cloud.positions);
+    colours.insert(colours.end(), points.colours.begin(), points.colours.end());
+  }
+  if (sample.cloud.positions.empty()) fail_without_points(path, 0);
+  if (fraction == 1.0) sample.of = sample.cloud.positions.size();  // without withheld points
+  sample.cloud.colours = to_bytes(colours);
+  return sample;
 }
 
 std::size_t read_las_positions(const std::filesystem::path& path,

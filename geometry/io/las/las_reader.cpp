@@ -263,6 +263,26 @@ bool LasReader::next(LasPoints& points, std::size_t max) {
   return count > 0;
 }
 
+bool LasReader::next_sample(LasPoints& points, double fraction) {
+  constexpr std::uint64_t block = 4096;
+  const std::uint64_t left = header_.points - points_read_;
+  const auto part_of = [&](std::uint64_t count) {
+    return std::min(count, static_cast<std::uint64_t>(fraction * static_cast<double>(count)));
+  };
+  if (compressed_ == nullptr) {
+    const std::uint64_t count = std::min(block, left), end = points_read_ + count;
+    const bool has_points = next(points, std::max<std::uint64_t>(1, part_of(count)));
+    points_read_ = end;
+    return has_points;
+  }
+  if (!next(points, 1)) return false;
+  const std::uint64_t rest = std::min(compressed_->left_in_chunk(), left - 1);
+  decompress(points, part_of(rest));
+  compressed_->skip_chunk();
+  points_read_ += rest;
+  return true;
+}
+
 bool LasReader::next_records(std::string& records, std::size_t max) {
   const std::uint64_t count = std::min<std::uint64_t>(max, header_.points - points_read_);
   if (compressed_ == nullptr) {

@@ -78,6 +78,11 @@ class LasReader {
   /// Error{bad_file} if the file cannot be read or its compressed data is damaged.
   bool next(LasPoints& points, std::size_t max = 1 << 16);
 
+  /// Replaces `points` with a fraction of the next points, and skips the others without decoding
+  /// them: of a chunk of a compressed file, otherwise of 4096 points. The fraction is in (0, 1], and
+  /// rounded up to one point. Returns false at the end of the file. Throws as next().
+  bool next_sample(LasPoints& points, double fraction);
+
   /// Replaces `records` with the next points in the uncompressed format of the file, including
   /// withheld points. Returns false at the end of the file. Requires LasFields::all. Throws as
   /// next().

@@ -30,6 +30,10 @@ class PointStream {
   /// are points in the header. Throws Error{bad_file}.
   void next(char* point);
 
+  /// Returns the number of points after the last one in its chunk.
+  std::uint64_t left_in_chunk() const { return left_in_chunk_; }
+  void skip_chunk() { left_in_chunk_ = 0; }  ///< Skips the rest of the chunk.
+
  private:
   ReadBytes read_;
   ChunkTable chunks_;

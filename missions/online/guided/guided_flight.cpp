@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -67,6 +68,7 @@ void GuidedFlight::listen() {
   if (state.gimbal_pitch() && state.pitch()) {
     gimbal_.hear(link_.now(), *state.gimbal_pitch(), *state.pitch());
   }
+  if (state.position()) observer_.track(view(), battery());
 }
 
 double GuidedFlight::camera_pitch() const {
@@ -170,11 +172,15 @@ MaybeFailure GuidedFlight::aim(const geometry::View& view) {
 MaybeFailure GuidedFlight::fly(const std::vector<Vector3d>& path) {
   executed_path_ = {path.front()};
   for (std::size_t i = 1; i < path.size(); ++i) {
-    if (MaybeFailure failure = fly_leg(path[i])) return failure;
+    do {
+      if (MaybeFailure failure = hold_on_request()) return failure;
+      if (MaybeFailure failure = fly_leg(path[i])) return failure;
+    } while (position_ != path[i]);  // held on the leg
   }
   return std::nullopt;
 }
 
+/// Flies to the end of a leg. On a hold request, the vehicle stops on the leg.
 MaybeFailure GuidedFlight::fly_leg(const Vector3d& to) {
   const flight::ScriptedLeg leg = flight::scripted_leg(motion_, position_, to);
   leg_ = {leg.from, leg.to};
@@ -202,6 +208,10 @@ MaybeFailure GuidedFlight::fly_leg(const Vector3d& to) {
     }
     elapsed = time_after(leg, motion_.vehicle().mode.jerk, elapsed, sent, late);
     if (failure) return abort_leg(leg, elapsed, *failure);
+    if (must_hold()) {
+      brake(leg, elapsed);
+      return come_to_rest(leg_);
+    }
     last = link_.now();
   }
   position_ = to;
@@ -296,6 +306,15 @@ MaybeFailure GuidedFlight::hold_until(const std::function<bool()>& is_done, doub
     if (link_.now() > end) return too_late;
   }
   return std::nullopt;
+}
+
+MaybeFailure GuidedFlight::hold_on_request() {
+  if (!must_hold()) return std::nullopt;
+  observer_.note("holding position on request");
+  constexpr double unlimited = std::numeric_limits<double>::infinity();
+  MaybeFailure failure = hold_until([this] { return !must_hold(); }, unlimited, rejected(""));
+  if (!failure) observer_.note("hold released");
+  return failure;
 }
 
 FlightFailure GuidedFlight::hold_until_takeover() {

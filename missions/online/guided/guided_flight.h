@@ -19,6 +19,7 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -36,11 +37,25 @@
 
 namespace skycap::missions::online {
 
+/// Functions that a flight calls about ten times per second. They must not block.
+struct FlightObserver {
+  /// Returns whether the vehicle must hold its position. It then brakes on its leg, and continues
+  /// on the same leg when this function returns false. A return is not held.
+  std::function<bool()> is_held = [] { return false; };
+  /// Receives the estimated vehicle position and camera direction, and the battery level (fraction
+  /// of a full charge).
+  std::function<void(const geometry::View&, std::optional<double>)> track =
+      [](const geometry::View&, std::optional<double>) {};
+  std::function<void(const std::string&)> note = [](const std::string&) {};
+};
+
 class GuidedFlight {
  public:
   /// Keeps a reference to `link`. After a stop request, every step returns a trouble.
   GuidedFlight(flight::mavlink::AutopilotLink& link, FlightFrame frame,
                const flight::Motion& motion, const GuidedLimits& limits, std::stop_token stop);
+
+  void observe(FlightObserver observer) { observer_ = std::move(observer); }
 
   /// Arms the motors and climbs vertically to the position `above`. Requires a vehicle prepared by
   /// prepare() (preflight.h).
@@ -52,7 +67,8 @@ class GuidedFlight {
   /// Starts to turn the vehicle and the camera to the direction of `view`.
   MaybeFailure aim(const geometry::View& view);
 
-  /// Flies a verified path leg by leg. The path must start at the hold position.
+  /// Flies a verified path leg by leg, and holds on request of the observer. The path must start at
+  /// the hold position.
   MaybeFailure fly(const std::vector<Eigen::Vector3d>& path);
 
   /// Waits until the vehicle is at rest and the camera is aimed in the direction of `view`.
@@ -61,6 +77,9 @@ class GuidedFlight {
   /// Holds position until `is_done` returns true. Returns `too_late` after `limit` seconds.
   MaybeFailure hold_until(const std::function<bool()>& is_done, double limit,
                           const FlightFailure& too_late);
+
+  /// Holds position while the observer requests it.
+  MaybeFailure hold_on_request();
 
   /// Holds position until another station takes control or the link is lost. Returns the reason.
   FlightFailure hold_until_takeover();
@@ -94,6 +113,7 @@ class GuidedFlight {
                        const std::string& what);
   MaybeFailure enter_mode(std::uint32_t mode, const std::string& name);
   MaybeFailure fly_leg(const Eigen::Vector3d& to);
+  bool must_hold() const { return !is_returning_ && observer_.is_held(); }
   MaybeFailure watch(const flight::Segment& leg) const;
   MaybeFailure watch_position(const flight::Segment& leg) const;
   FlightFailure abort_leg(const flight::ScriptedLeg& leg, double time,
@@ -118,6 +138,7 @@ class GuidedFlight {
   flight::Motion motion_;
   GuidedLimits limits_;
   std::stop_token stop_;
+  FlightObserver observer_;
   std::uint32_t mode_ = 0;                              ///< Last flight mode set by this program.
   Eigen::Vector3d position_ = Eigen::Vector3d::Zero();  ///< Current or next hold position.
   std::vector<Eigen::Vector3d> executed_path_;

@@ -45,17 +45,25 @@ LiveFlight::LiveFlight(LiveSurvey& survey, GuidedFlight& vehicle, const flight::
       pad_(survey.flight()->pad()),
       above_pad_(survey.flight()->above_pad()),
       sensor_(std::move(sensor)),
-      options_(std::move(options)) {}
+      options_(std::move(options)) {
+  FlightObserver observer = options_.observer;
+  observer.note = options_.note;
+  vehicle_.observe(std::move(observer));
+}
 
 FlightEnd LiveFlight::run() {
   MaybeFailure failure = begin();
   while (!failure && survey_.proposal().view) failure = visit(*survey_.proposal().view);
   if (failure) return end(*failure);
   options_.note("survey completed");
+  if (MaybeFailure held = vehicle_.hold_on_request()) return end(*held);
   return return_to_home(std::nullopt);
 }
 
 MaybeFailure LiveFlight::begin() {
+  if (options_.observer.is_held()) {
+    return rejected("the survey is held; resume it before the take-off");
+  }
   const Vector3d spot = vehicle_.view().position;
   here_ = {spot.x(), spot.y(), above_pad_.z()};
   // The vehicle may stand off the centre of the pad and climbs vertically from its position.
@@ -78,6 +86,7 @@ MaybeFailure LiveFlight::begin() {
 }
 
 MaybeFailure LiveFlight::visit(const geometry::View& view) {
+  if (MaybeFailure failure = vehicle_.hold_on_request()) return failure;
   if (MaybeFailure failure = find_path(view)) return failure;
   if (MaybeFailure failure = check_battery()) return failure;
   options_.note(fmt::format("view {}: flying to ({:.1f}, {:.1f}, {:.1f})", survey_.views().size(),

@@ -40,6 +40,8 @@ struct FlightOptions {
   /// Receives progress messages.
   std::function<void(const std::string&)> note = [](const std::string&) {};
   std::function<void()> show = [] {};  ///< Called after each scan, in the background.
+  /// Requests to hold, and the receiver of the vehicle's position. The flight sets its note.
+  FlightObserver observer;
   /// Runs work in the background of the flight.
   std::function<std::future<void>(std::function<void()>)> launch = [](std::function<void()> work) {
     return std::async(std::launch::async, std::move(work));

@@ -17,6 +17,7 @@
 #include "geometry/points/usable_scan.h"
 #include "missions/online/live/kept_scan.h"
 #include "missions/online/live/live_journal.h"
+#include "missions/online/live/live_status.h"
 #include "missions/session/constrained_planner.h"
 #include "missions/support/journal_text.h"
 
@@ -26,7 +27,6 @@ namespace {
 namespace fs = std::filesystem;
 using Eigen::Vector3d;
 
-constexpr const char* journal_name = "live.journal";
 constexpr const char* scans_name = "scans";
 
 /// Returns whether the first record of a journal is from a version with the same format.
@@ -66,7 +66,7 @@ struct LiveSurvey::Impl {
         folder(made_folder(source)),
         first_view(begin.view),
         run{.seed = identity.seed, .threads = threads, .sphere = begin.sphere},
-        log(folder / journal_name) {
+        log(folder / live_journal_name) {
     const std::string text = support::identity_text(
         identity, {{"format", support::journal_format}, {"surface", "live"}});
     // Without a scan there is nothing to resume, and the mission may have been corrected.

@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <optional>
 #include <system_error>
 #include <utility>
 
@@ -93,7 +94,8 @@ class Client {
   /// Reads and answers messages. Returns false with a reason when the client is disconnected.
   bool serve(Session& session, std::string& reason) {
     try {
-      return receive(reason) && answer(session, reason);
+      if (!pending_) return receive(reason) && answer(session, reason);
+      return release(session, reason) && (pending_ || answer(session, reason));
     } catch (const Error& failure) {  // Invalid message.
       reason = failure.what();
       dismiss(handle_.get(), error_message(reason));
@@ -124,21 +126,36 @@ class Client {
 
   bool answer(Session& session, std::string& reason) {
     while (const std::optional<Message> message = reader_.next()) {
-      if (!send_all(handle_.get(), session.answer(*message))) {
-        reason = "did not receive its answer";
-        return false;
-      }
-      session.settle();
-      if (session.is_finished()) {
-        reason = "finished the survey";
-        return false;
-      }
+      pending_ = session.answer(*message);
+      if (!release(session, reason)) return false;
+      if (pending_) return true;
     }
     return true;
   }
 
+  /// Sends the pending answer, unless the survey is held.
+  bool release(Session& session, std::string& reason) {
+    if (session.is_held_back(*pending_)) {
+      session.settle();
+      pollfd poll_request{handle_.get(), POLLRDHUP, 0};
+      if (::poll(&poll_request, 1, poll_period) <= 0) return true;
+      reason = "left while the survey was held";
+      return false;
+    }
+    const bool is_sent = send_all(handle_.get(), *pending_);
+    pending_.reset();
+    if (!is_sent) {
+      reason = "did not receive its answer";
+      return false;
+    }
+    session.settle();
+    if (session.is_finished()) reason = "finished the survey";
+    return !session.is_finished();
+  }
+
   Handle handle_;
   FrameReader reader_;
+  std::optional<Message> pending_;  ///< Answer that has not been sent yet.
   std::vector<char> chunk_ = std::vector<char>(1 << 20);
   Clock::time_point heard_ = Clock::now();
 };

@@ -140,16 +140,21 @@ ScanFound depth_scan(const Message& message, const flight::CaptureOptions& captu
 
 Session::Session(std::string mission, const flight::FlightOptions& flight, const LiveOptions& live,
                  LiveSurvey& survey, std::function<std::string()> finish,
-                 std::function<void()> show)
+                 std::function<void()> show, std::function<bool()> is_held)
     : mission_(std::move(mission)),
       flight_(flight),
       live_(live),
       survey_(survey),
       finish_(std::move(finish)),
-      show_(std::move(show)) {}
+      show_(std::move(show)),
+      is_held_(std::move(is_held)) {}
 
 void Session::settle() {
   if (std::exchange(has_changed_, false)) show_();
+}
+
+bool Session::is_held_back(const Message& answer) const {
+  return is_held_() && answer.header.contains("view") && !answer.header["view"].is_null();
 }
 
 Message Session::answer(const Message& message) {

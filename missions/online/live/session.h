@@ -15,10 +15,11 @@ class Session {
  public:
   /// Keeps references to the survey and its options. `mission` is the mission's name. `finish`
   /// writes the package and returns its summary. Unless `finish` throws, the survey is then closed.
-  /// settle() calls `show`.
+  /// settle() calls `show`. While `is_held` returns true, no view is released.
   Session(
       std::string mission, const flight::FlightOptions& flight, const LiveOptions& live,
-      LiveSurvey& survey, std::function<std::string()> finish, std::function<void()> show = [] {});
+      LiveSurvey& survey, std::function<std::string()> finish, std::function<void()> show = [] {},
+      std::function<bool()> is_held = [] { return false; });
 
   /// Returns one answer per message. Errors are answered with {"type": "error", "what": ...} and
   /// leave the survey unchanged.
@@ -27,6 +28,10 @@ class Session {
   /// Calls `show` if the last message has changed the survey. Must be called after its answer was
   /// sent.
   void settle();
+
+  /// Returns whether an answer must not be sent yet, because it contains a view and the survey is
+  /// held.
+  bool is_held_back(const Message& answer) const;
 
   bool is_finished() const { return is_finished_; }
 
@@ -45,6 +50,7 @@ class Session {
   LiveSurvey& survey_;
   std::function<std::string()> finish_;
   std::function<void()> show_;
+  std::function<bool()> is_held_;
   bool has_changed_ = false;
   bool is_finished_ = false;
 };

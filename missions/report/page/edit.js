@@ -2,14 +2,16 @@
 // handles, and returns clicked places and moved handles. A page that is not in a frame has no editor.
 //
 //     from the studio  {objects: [{id, name, role, shape, points, bottom, top, direction, is_fixed}],
-//                       hidden: [layers and roles of volumes], tool: true or false}
+//                       hidden: [layers and roles of volumes], tool: true or false,
+//                       survey: Float32Array with the points measured so far}
 //     to the studio    {ready: {ground, pad}}, {placed: [x, y, z]}, {moved: {id, points, is_over}},
 //                      {selected: id}
 //
 // Shapes: point, view, line, prism (corners) and box (two opposite corners). Units: metres.
 
 const edit_colours = { takeoff: 0xffd24a, rally: 0x7fd6a0, view: 0x8fd0ff, selected: 0xffffff, line: 0xffd24a,
-  no_fly: 0xe03c3c, geofence: 0x3aa0e0, scene: 0xc8a0f0 };
+  no_fly: 0xe03c3c, geofence: 0x3aa0e0, scene: 0xc8a0f0, vehicle: 0xff7ad9, next: 0xffd24a };
+const survey_colour = [120, 226, 150];
 const handle_reach = 14;  // [px]
 
 class Editor {
@@ -34,8 +36,9 @@ class Editor {
 
   tell(message) { parent.postMessage(message, "*"); }
 
-  hear({ objects, hidden, tool }) {
+  hear({ objects, hidden, tool, survey }) {
     if (Array.isArray(hidden)) this.hide(hidden);
+    if (survey instanceof Float32Array) this.show_survey(survey);
     if (Array.isArray(objects)) {
       // During a drag, the object under the pointer is newer than the studio's.
       const dragged = this.drag && this.drag.object;
@@ -46,6 +49,16 @@ class Editor {
       this.has_tool = !!tool;
       this.panel.stage.classList.toggle("measuring", this.has_tool);
     }
+  }
+
+  /// Shows the points of a running survey instead of the points of the model.
+  show_survey(positions) {
+    const { viewer } = this, count = positions.length / 3;
+    if (this.survey) viewer.remove_cloud("survey");
+    this.survey = count > 0;
+    if (viewer.layers.measured) viewer.layers.measured.visible = !this.survey;
+    if (this.survey) viewer.add_cloud("survey", { count, of: count, positions, spacing: spacing_of(positions) }, survey_colour);
+    viewer.draw_soon();
   }
 
   hide(names) {

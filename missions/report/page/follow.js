@@ -6,11 +6,20 @@ const memory_name = "skycap-page";
 /// Returns the state of the page before it was reloaded, or null.
 function remembered() {
   try {
-    const text = sessionStorage.getItem(memory_name);
-    sessionStorage.removeItem(memory_name);
+    const text = storage() ? storage().getItem(memory_name) : window.name;
+    if (storage()) storage().removeItem(memory_name);
     return text ? JSON.parse(text) : null;
   } catch (failure) {
-    return null;  // some browsers provide no storage for local files
+    return null;
+  }
+}
+
+/// The storage of the page, or null in frames of the studio and for local files in some browsers.
+function storage() {
+  try {
+    return sessionStorage;
+  } catch (failure) {
+    return null;
   }
 }
 
@@ -22,11 +31,8 @@ function remember(skycap) {
       colour: panel.viewer.mode,
       layers: Object.fromEntries(Object.entries(layers).map(([name, layer]) => [name, layer.visible])) });
   }
-  try {
-    sessionStorage.setItem(memory_name, JSON.stringify(state));
-  } catch (failure) {
-    // In that case the page starts with its defaults after each reload.
-  }
+  if (storage()) storage().setItem(memory_name, JSON.stringify(state));
+  else window.name = JSON.stringify(state);  // kept by the frame
 }
 
 function restore(skycap, state) {

@@ -83,6 +83,21 @@ function sparse_first(count) {
   return order;
 }
 
+/// Estimates the distance between neighbouring points on a surface, as compute_spacing() does in
+/// missions/report/cloud_code.h: from cubes that contain two points on average.
+function spacing_of(positions) {
+  const count = positions.length / 3, step = Math.max(1, Math.ceil(count / 5000)), taken = new Set();
+  let side = new THREE.Box3().setFromArray(positions).getSize(new THREE.Vector3()).length() / 2;
+  for (let i = 0; i < 40 && taken.size < count / step / 2; ++i, side /= 1.5) {
+    taken.clear();
+    for (let k = 0; k < 3 * count; k += 3 * step) {
+      const [x, y, z] = [0, 1, 2].map((axis) => Math.floor(positions[k + axis] / side) & 65535);
+      taken.add(65536 * (65536 * x + y) + z);
+    }
+  }
+  return 1.5 * side / Math.SQRT2 / Math.sqrt(step);
+}
+
 function cloud_points(cloud, least, spacing = cloud.spacing) {
   const geometry = new THREE.BufferGeometry();
   geometry.setIndex(new THREE.BufferAttribute(sparse_first(cloud.count), 1));

@@ -201,6 +201,24 @@ class Viewer {
     step();
   }
 
+  /// Adds a cloud in one colour.
+  add_cloud(name, cloud, colour) {
+    const layer = cloud_points(cloud, 1.6), colours = layer.geometry.getAttribute("colour");
+    for (let i = 0; i < cloud.count; ++i) colours.array.set(colour, 3 * i);
+    this.layers[name] = layer;
+    this.cloud_layers.push([name, layer]);
+    this.cloud_scene.add(layer);
+  }
+
+  remove_cloud(name) {
+    const layer = this.layers[name];
+    this.cloud_scene.remove(layer);
+    layer.geometry.dispose();
+    layer.material.dispose();
+    delete this.layers[name];
+    this.cloud_layers = this.cloud_layers.filter(([other]) => other !== name);
+  }
+
   show_layer(name, is_shown) {
     if (this.layers[name]) this.layers[name].visible = is_shown;
     this.draw_soon();

@@ -131,8 +131,8 @@ function make_draw(mission) {
       draw.listed = listed;
       objects.forEach((object, i) => fill_row(list.children[i], object));
     },
-    /// Shows the views of a survey so far, and the straight lines between them.
-    show_views(views) {
+    /// Shows the views of a survey so far, the straight lines between them, and the points of its preview.
+    show_survey(views, points) {
       draw.views = views.map(({ position, direction }, i) => ({ id: "view." + i, role: "view", shape: "view", points: [position],
         direction, is_fixed: true, is_selected: i === views.length - 1 }));
       if (views.length > 1) {
@@ -141,6 +141,7 @@ function make_draw(mission) {
       const last = views.at(-1);
       draw.growth.textContent = last ? views.length + " views, " + last.points.toLocaleString("en") + " points" : "";
       draw.stage.node.dataset.views = views.length;
+      draw.stage.set_survey(points);
       draw.show();
     },
     /// Shows the numbers of an object that is being dragged.

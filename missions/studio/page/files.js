@@ -1,7 +1,7 @@
 // Step 1: the files of the folder.
 
 const kind_texts = { mission: "mission", map: "map, tile or terrain", model: "model or mesh", cloud: "point cloud",
-  package: "results" };
+  package: "results", live: "live survey" };
 
 /// Opens a file in the step for its kind.
 async function open_file(file) {
@@ -11,6 +11,9 @@ async function open_file(file) {
   } else if (file.kind === "package") {
     go_to("results");
     await studio.steps.results.open(file.path);
+  } else if (file.kind === "live") {
+    go_to("live");
+    await studio.steps.live.open(file.path);
   } else if (file.kind === "cloud") {
     go_to("site");
     await studio.steps.site.view_cloud(file.path);
@@ -102,6 +105,6 @@ studio.steps.files = {
     this.rows.replaceChildren(...studio.listing.map((file) => element("tr", {},
       element("td", {}, button(file.path, () => open_file(file))),
       element("td", {}, kind_texts[file.kind]),
-      element("td", {}, file.kind === "package" ? "" : bytes_text(file.bytes)))));
+      element("td", {}, ["package", "live"].includes(file.kind) ? "" : bytes_text(file.bytes)))));
   },
 };

@@ -84,7 +84,7 @@ studio.steps.mission = {
     Object.assign(this, { path: mission.path, text: mission.text, saved: mission.text, version: mission.version });
     this.conflict.hidden = true;
     this.history.clear();
-    this.draw.show_views([]);
+    this.draw.show_survey([], new Float32Array());
     this.show_text(mission);
   },
   show_text(mission) {
@@ -253,22 +253,29 @@ studio.steps.mission = {
       if (job.exit_code === 0) go_to("results");
     }
   },
-  /// Shows the views of a running survey in the 3-D view, every second. Returns the function for its job's changes.
+  /// Shows the views and points of a running survey in the 3-D view, every second. Returns the function for its job's changes.
   follow_survey(folder) {
     const views = [], { path } = this;
+    let points = new Float32Array(), stride = 0;
     let is_asking = false, is_viewed = !this.draw.box.hidden, timer = null;
     const ask = async () => {
       if (is_asking || this.path !== path) return;
       is_asking = true;
       try {
-        const answer = await request("progress?path=" + encodeURIComponent(folder) + "&from=" + views.length);
+        const answer = await request("progress?path=" + encodeURIComponent(folder) + "&from=" + views.length +
+          "&points=" + points.length / 3 + "&stride=" + stride);
         if (answer.views.length === 0) return;  // not begun, or ended
         if (!is_viewed) {
           is_viewed = true;
           await this.view();
         }
         views.push(...answer.views);
-        this.draw.show_views(views);
+        const { preview } = answer, kept = points.subarray(0, 3 * preview.from);
+        stride = preview.stride;
+        points = new Float32Array(kept.length + preview.points.length);
+        points.set(kept);
+        points.set(preview.points.map((millimetres) => millimetres / 1000), kept.length);
+        this.draw.show_survey(views, points);
       } catch (failure) {
         say(failure.message);
       } finally {

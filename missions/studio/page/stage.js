@@ -9,7 +9,7 @@ const is_place = (place) => Array.isArray(place) && place.length === 3 &&
 function make_stage(title, listeners) {
   const node = frame(title);
   node.hidden = true;
-  const stage = { node, path: "", is_ready: false, objects: [], hidden: [], has_tool: false };
+  const stage = { node, path: "", is_ready: false, objects: [], hidden: [], has_tool: false, survey: null };
   const send = (message) => { if (stage.is_ready) node.contentWindow.postMessage(message, "*"); };
   addEventListener("message", (event) => {
     if (event.source !== node.contentWindow || typeof event.data !== "object" || !event.data) return;
@@ -20,7 +20,7 @@ function make_stage(title, listeners) {
       if (listeners.ready) {
         listeners.ready({ ground: Number.isFinite(ready.ground) ? ready.ground : 0, pad: is_place(ready.pad) ? ready.pad : null });
       }
-      send({ objects: stage.objects, hidden: stage.hidden, tool: stage.has_tool });
+      send({ objects: stage.objects, hidden: stage.hidden, tool: stage.has_tool, survey: stage.survey });
       node.dataset.ready = "true";
     }
     if (is_place(placed) && listeners.placed) act(listeners.placed(placed));
@@ -39,6 +39,12 @@ function make_stage(title, listeners) {
       Object.assign(stage, { objects, hidden });
       node.dataset.objects = objects.length;
       send({ objects, hidden });
+    },
+    /// Shows the points of a running survey: coordinates in metres.
+    set_survey(survey) {
+      stage.survey = survey;
+      node.dataset.points = survey.length / 3;
+      send({ survey });
     },
     use_tool(has_tool) {
       stage.has_tool = has_tool;

@@ -10,6 +10,12 @@ function planned_views(summary) {
 /// Returns [{view, position, direction, via, from}] in flight order. `via` are the points of the leg to the
 /// view, and `from` is the view at which this leg begins.
 function flown_views(summary) {
+  if (summary.kind === "inspection") {
+    throw new Error("Inspection flights are continuous and cannot be edited view by view. Change the mission and plan again.");
+  }
+  if (((summary.flight || {}).fleet || {}).vehicles) {
+    throw new Error("Flights of several vehicles cannot be edited view by view. Set flight.vehicle instead of flight.vehicles and plan again.");
+  }
   const planned = planned_views(summary);
   const sorties = ((summary.flight || {}).route || {}).sorties || [];
   if (!planned.length || !sorties.length || !sorties[0].legs) {

@@ -1,4 +1,5 @@
 #include "geometry/io/cloud_io.h"
+#include "geometry/io/cloud_sample.h"
 
 #include <cstring>
 #include <limits>
@@ -154,6 +155,22 @@ TEST(CloudIo, ReadsLasPointsWithScaleAndOffset) {
   ASSERT_EQ(cloud.colours.size(), 2U);
   EXPECT_THAT(cloud.colours[0], testing::ElementsAre(0, 0xAB, 0));
   EXPECT_TRUE(read_cloud(folder.file("b.las", las_bytes(6, 1, 1))).colours.empty());
+}
+
+TEST(CloudIo, SamplesLasPointsWithLargeCoordinates) {
+  const TemporaryFolder folder;
+  std::string bytes = las_bytes(6, 9000, 9000);
+  constexpr double offset = 691'000.0;
+  std::memcpy(bytes.data() + 155, &offset, sizeof offset);
+  const auto path = folder.file("a.las", bytes);
+  EXPECT_THROW(read_cloud(path), Error);
+  const CloudSample sample = sample_las_cloud(path, 900);
+  EXPECT_EQ(sample.of, 9000U);
+  EXPECT_NEAR(static_cast<double>(sample.cloud.positions.size()), 900.0, 3.0);
+  for (const Vector3f& position : sample.cloud.positions) {
+    ASSERT_EQ(position.cast<double>() + sample.offset, Eigen::Vector3d(691'000.5, -2.0, 3.0));
+  }
+  EXPECT_LT(sample.cloud.positions.front().norm(), 1500.0F);
 }
 
 TEST(CloudIo, ReadsAllLasVersionsAndPointFormats) {

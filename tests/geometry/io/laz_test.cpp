@@ -11,6 +11,7 @@
 
 #include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
+#include "geometry/io/cloud_sample.h"
 #include "geometry/io/las/las_reader.h"
 #include "tests/support/temporary_folder.h"
 
@@ -84,6 +85,26 @@ TEST_P(Laz, ReadsCloud) {
     positions.insert(positions.end(), chunk.begin(), chunk.end());
   });
   EXPECT_EQ(positions, cloud.positions);
+}
+
+TEST_P(Laz, SamplesPartOfEachChunk) {
+  const std::string file = find_test_file(GetParam());
+  const AttributedCloud cloud = read_cloud(file);
+  const CloudSample whole = sample_las_cloud(file, 1000);
+  EXPECT_EQ(whole.cloud.positions, cloud.positions);
+  EXPECT_EQ(whole.cloud.colours, cloud.colours);
+  EXPECT_EQ(whole.of, cloud.positions.size());
+  EXPECT_EQ(whole.offset, Eigen::Vector3d::Zero());
+  const CloudSample sample = sample_las_cloud(file, 60);
+  EXPECT_EQ(sample.of, point_count);
+  EXPECT_GE(sample.cloud.positions.size(), 50U);
+  EXPECT_LE(sample.cloud.positions.size(), 64U);  // at least one point of each of four chunks
+  EXPECT_EQ(sample.cloud.colours.empty(), cloud.colours.empty());
+  std::size_t at = 0;  // the points are in the order of the file
+  for (const Eigen::Vector3f& position : sample.cloud.positions) {
+    while (at < cloud.positions.size() && cloud.positions[at] != position) ++at;
+    ASSERT_LT(at++, cloud.positions.size());
+  }
 }
 
 /// Returns true if reading ends with a one-line error that names the file, false if points are

@@ -1,4 +1,5 @@
 // A resumed survey gives the same results as an uninterrupted one.
+#include <array>
 #include <filesystem>
 #include <map>
 #include <sstream>
@@ -8,7 +9,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
+#include "geometry/io/cloud_io.h"
 #include "geometry/io/record_log.h"
 #include "missions/cli/command_line.h"
 #include "tests/missions/ctrl_c.h"
@@ -111,6 +114,43 @@ TEST_F(ResumedPlan, MatchesUninterruptedPlanAfterTwoInterruptions) {
   interrupt_after(5, {"--max-views", "6", "--resume"});
   ASSERT_EQ(run_skycap(plan("part", {"--max-views", "6", "--resume"})).exit_code, 0);
   EXPECT_TRUE(results_in(folder_ / "part") == results_in(folder_ / "whole"));
+}
+
+/// Points of the preview in millimetres.
+std::vector<std::array<long, 3>> preview_in(const fs::path& folder, std::size_t stride) {
+  const std::vector<std::string> records =
+      geometry::read_records(folder / "survey.points").records;
+  EXPECT_EQ(nlohmann::json::parse(records.at(0)).at("stride"), stride);
+  std::vector<std::array<long, 3>> points;
+  for (std::size_t i = 1; i < records.size(); ++i) {
+    const auto numbers = nlohmann::json::parse(records[i]).get<std::vector<long>>();
+    for (std::size_t k = 0; k < numbers.size(); k += 3)
+      points.push_back({numbers[k], numbers[k + 1], numbers[k + 2]});
+  }
+  return points;
+}
+
+TEST_F(ResumedPlan, WritesPreviewOfMeasuredPoints) {
+  folder_.write("m.yaml", quick_mission());
+  const std::vector<std::string> more{"--max-views", "6"};
+  interrupt_after(3, more);
+  const auto expect_cloud = [&] {
+    const geometry::AttributedCloud cloud =
+        geometry::read_cloud(folder_.path() / "part" / "cloud.ply");
+    const auto points = preview_in(folder_.path() / "part", 1);
+    ASSERT_EQ(points.size(), cloud.positions.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_NEAR(static_cast<double>(points[i][static_cast<std::size_t>(axis)]) / 1000.0,
+                    static_cast<double>(cloud.positions[i][axis]), 0.00051);
+      }
+    }
+  };
+  expect_cloud();
+  interrupt_after(5, {"--max-views", "6", "--resume"});
+  expect_cloud();
+  ASSERT_EQ(run_skycap(plan("part", {"--max-views", "6", "--resume"})).exit_code, 0);
+  EXPECT_FALSE(fs::exists(folder_.path() / "part" / "survey.points"));
 }
 
 TEST_F(ResumedPlan, StartsWithoutJournal) {

@@ -247,11 +247,13 @@ TEST_F(Studio, ListsResultsAndLiveSurveys) {
     fs::create_directories((folder_.path() / "work" / name).parent_path());
     write("work/" + std::string(name), "{}");
   }
-  std::vector<std::string> packages;
+  std::vector<std::string> packages, lives;
   for (const ListedFile& file : service_->folder().list().files) {
     if (file.kind == "package") packages.push_back(file.path);
+    if (file.kind == "live") lives.push_back(file.path);
   }
-  EXPECT_THAT(packages, ElementsAre("live", "plan"));
+  EXPECT_THAT(packages, ElementsAre("plan"));
+  EXPECT_THAT(lives, ElementsAre("live"));
 }
 
 TEST_F(Studio, ReportsTheViewsOfARunningSurvey) {
@@ -274,6 +276,49 @@ TEST_F(Studio, ReportsTheViewsOfARunningSurvey) {
   text[0] = text[0] == '0' ? '1' : '0';  // a checksum
   write("work/plan/survey.journal", text);
   EXPECT_THAT(get(page() + "/api/progress?path=plan"), StartsWith("HTTP/1.1 400"));
+}
+
+TEST_F(Studio, SendsThePreviewOfARunningSurveyFromAPoint) {
+  fs::create_directories(folder_.path() / "work/plan");
+  const std::string path = page() + "/api/progress?path=plan";
+  EXPECT_THAT(get(path), AllOf(ok, HasSubstr("\"stride\":0")));
+  {
+    geometry::RecordLog log(folder_.path() / "work/plan/survey.points");
+    log.append(R"({"stride":2})");
+    log.append("[1,2,3,4,5,6]");
+    log.append("[7,8,9]");
+  }
+  EXPECT_THAT(get(path), HasSubstr(R"({"stride":2,"from":0,"points":[1,2,3,4,5,6,7,8,9]})"));
+  EXPECT_THAT(get(path + "&stride=2&points=2"),
+              HasSubstr(R"({"stride":2,"from":2,"points":[7,8,9]})"));
+  // The preview was rewritten with a larger stride.
+  EXPECT_THAT(get(path + "&stride=1&points=2"), HasSubstr(R"("from":0,"points":[1,2,3,)"));
+  EXPECT_THAT(get(path + "&stride=2&points=-1"), HasSubstr(R"("from":0,)"));
+}
+
+TEST_F(Studio, ShowsAndHoldsALiveSurvey) {
+  fs::create_directories(folder_.path() / "work/live");
+  fs::create_directories(folder_.path() / "work/other");
+  write("work/live/live.journal", "");
+  const std::string path = page() + "/api/live?path=live";
+  EXPECT_THAT(get(path), AllOf(ok, HasSubstr(R"({"running":false,"hold":false})")));
+  write("work/live/live.json", R"({"held":false,"action":"flying"})");
+  EXPECT_THAT(get(path), HasSubstr(R"("running":true,"hold":false,"status":{"held":false)"));
+  EXPECT_THAT(post("/api/live", R"({"path":"live","held":true})"), HasSubstr("\"hold\":true"));
+  EXPECT_TRUE(fs::exists(folder_.path() / "work/live/live.hold"));
+  EXPECT_THAT(post("/api/live", R"({"path":"live","held":false})"), HasSubstr("\"hold\":false"));
+  EXPECT_FALSE(fs::exists(folder_.path() / "work/live/live.hold"));
+  // The status of a killed program is not shown.
+  fs::last_write_time(folder_.path() / "work/live/live.json",
+                      fs::file_time_type::clock::now() - std::chrono::seconds(10));
+  EXPECT_THAT(get(path), HasSubstr("\"running\":false"));
+  EXPECT_THAT(post("/api/live", R"({"path":"other","held":true})"), StartsWith("HTTP/1.1 400"));
+  EXPECT_THAT(post("/api/live", R"({"path":"../work/live","held":true})"),
+              StartsWith("HTTP/1.1 400"));
+  EXPECT_FALSE(fs::exists(folder_.path() / "work/other/live.hold"));
+  fs::create_symlink("../../secret.yaml", folder_.path() / "work/live/live.hold");
+  EXPECT_THAT(post("/api/live", R"({"path":"live","held":true})"), StartsWith("HTTP/1.1 400"));
+  EXPECT_EQ(read("secret.yaml"), "name: secret\n");
 }
 
 TEST_F(Studio, SendsAMissionOnlyIfItHasChanged) {

@@ -163,6 +163,76 @@ TEST_F(FlySurvey, StaysOnLegsWhenLinkIsLost) {
   }
 }
 
+/// Requests a hold for 20 s at different times of the flight.
+TEST_F(FlySurvey, HoldsOnRequestAndContinuesOnTheSameLegs) {
+  constexpr double held = 20.0;
+  fly();
+  const double duration = autopilot_->time() - autopilot_->taken_off();
+  const std::vector<Vector3d> legs = autopilot_->set_points();
+  const Vector3d above_pad = survey_->flight()->above_pad();
+  const double near = rehearsal_.setup().flight().tracking_error + 0.25;
+  for (int i = 0; i < 8; ++i) {
+    restart();
+    const double begin = 12.0 + 5.3 * i;
+    FlightOptions options;
+    options.observer.is_held = [&] {
+      if (!autopilot_->has_taken_off()) return false;
+      const double time = autopilot_->time() - autopilot_->taken_off() - begin;
+      return time > 0.0 && time < held;
+    };
+    std::size_t tracked = 0;
+    options.observer.track = [&](const geometry::View& view, std::optional<double> battery) {
+      EXPECT_LT((view.position - autopilot_->position()).norm(), 1.0);  // of 0.1 s earlier
+      EXPECT_TRUE(battery);
+      ++tracked;
+    };
+    const FlightEnd end = fly({}, options);
+    ASSERT_FALSE(end.failure) << end.failure->what << "\n" << notes_;
+    EXPECT_TRUE(end.has_landed);
+    EXPECT_THAT(notes_, HasSubstr("holding position on request\nhold released"));
+    EXPECT_GT(tracked, 100U);
+    const double longer = autopilot_->time() - autopilot_->taken_off() - duration;
+    EXPECT_GT(longer, 0.3 * held) << begin;  // scanning and settling continue during a hold
+    EXPECT_LT(longer, held + 10.0) << begin;
+    std::vector<Vector3d> track;
+    for (const Vector3d& position : autopilot_->track()) {
+      if ((position - above_pad).head<2>().norm() > near) track.push_back(position);
+    }
+    EXPECT_TRUE(are_near(track, legs, near)) << begin;
+    // Ten setpoints per second of the hold are equal.
+    const std::vector<Vector3d>& sent = autopilot_->set_points();
+    std::size_t longest = 0, run = 0;
+    for (std::size_t k = 1; k < sent.size(); ++k) {
+      run = sent[k] == sent[k - 1] ? run + 1 : 0;
+      longest = std::max(longest, run);
+    }
+    EXPECT_GT(longest, 100U) << begin;
+    EXPECT_EQ(online::positions(survey_->finish().views),
+              online::positions(rehearsal_.planned().views));
+    notes_.clear();
+  }
+}
+
+TEST_F(FlySurvey, ReturnsOnBatteryFailsafeWhileHeld) {
+  FlightOptions options;
+  options.observer.is_held = [&] {
+    return autopilot_->has_taken_off() && autopilot_->time() - autopilot_->taken_off() > 20.0;
+  };
+  const FlightEnd end = fly({.battery_fails = 60.0}, options);
+  ASSERT_TRUE(end.failure);
+  EXPECT_EQ(end.failure->kind, FailureKind::battery);
+  EXPECT_TRUE(end.has_landed);
+}
+
+TEST_F(FlySurvey, DoesNotTakeOffWhileHeld) {
+  FlightOptions options;
+  options.observer.is_held = [] { return true; };
+  const FlightEnd end = fly({}, options);
+  ASSERT_TRUE(end.failure);
+  EXPECT_THAT(end.failure->what, HasSubstr("resume it before the take-off"));
+  EXPECT_TRUE(autopilot_->track().empty());
+}
+
 struct HeldFlight {
   const char* name;
   AutopilotFaults faults;

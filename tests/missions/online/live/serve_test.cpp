@@ -1,7 +1,9 @@
+#include <atomic>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
+#include <future>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -9,12 +11,14 @@
 #include <stop_token>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "clients/skycap_live.h"
+#include "missions/online/live/live_status.h"
 #include "missions/online/live/scan_input.h"
 #include "missions/online/live/server.h"
 #include "missions/online/live/session.h"
@@ -57,14 +61,17 @@ std::string scanner_mission() {
 /// Survey that is served from its own thread.
 class Served {
  public:
-  Served(const Rehearsal& rehearsal, ServerEndpoint endpoint)
+  Served(
+      const Rehearsal& rehearsal, ServerEndpoint endpoint,
+      std::function<bool()> is_held = [] { return false; })
       : survey_(rehearsal.open(folder_.path() / "survey")),
         session_(rehearsal.setup().name, rehearsal.setup().flight(), rehearsal.setup().live,
                  survey_,
                  [this] {
                    record_ = survey_.finish();
                    return std::string("done");
-                 }),
+                 },
+                 [] {}, std::move(is_held)),
         server_(std::move(endpoint)),
         thread_([this](const std::stop_token& stop) {
           server_.run(
@@ -147,6 +154,52 @@ TEST(Serve, MatchesPlanForShippedMissions) {
     std::cout << name << ": " << planned.views.size() << " views, " << planned.cloud.size()
               << " points, " << length.count() << " s\n";
   }
+}
+
+TEST(Serve, ReleasesNoViewWhileHeld) {
+  const Rehearsal rehearsal(tests::quick_mission());
+  std::atomic<bool> is_held = false;
+  std::atomic<int> asked = 0;  // how often the held server asks
+  Served served(rehearsal, {.socket = {}, .port = 0}, [&] {
+    if (is_held) ++asked;
+    return is_held.load();
+  });
+  skycap_live::Survey client(served.address());
+  is_held = true;
+  std::future<std::string> answer = std::async(std::launch::async, [&] { return client.next(); });
+  while (asked < 3) std::this_thread::yield();
+  EXPECT_EQ(answer.wait_for(std::chrono::seconds(0)), std::future_status::timeout);
+  EXPECT_THROW(skycap_live::Survey second(served.address()), std::runtime_error);  // still busy
+  is_held = false;
+  EXPECT_THAT(answer.get(), HasSubstr("\"state\":\"view\""));
+  EXPECT_THAT(client.next(), HasSubstr("\"state\":\"view\""));
+}
+
+TEST(LiveStatus, WritesTheStateAndFollowsHoldRequests) {
+  const Rehearsal rehearsal(tests::flight_mission());
+  const tests::TestFolder folder;
+  const LiveSurvey survey = rehearsal.open(folder.path() / "survey");
+  const std::filesystem::path file = folder.path() / "survey" / status_name;
+  {
+    LiveStatus status(folder.path() / "survey", rehearsal.setup().flight());
+    EXPECT_FALSE(status.is_held());
+    status.set_survey(survey);
+    status.set_vehicle({{1.0, 2.0, 3.0}, {0.0, 1.0, 0.0}}, 0.5);
+    status.set_action("flying");
+    folder.write("survey/live.hold", "");
+    while (!status.is_held()) std::this_thread::yield();
+    const auto text = [&] {  // the file is replaced atomically
+      return std::filesystem::exists(file) ? tests::read_content(file) : std::string();
+    };
+    while (text().find("\"held\":true") == std::string::npos) std::this_thread::yield();
+    EXPECT_THAT(text(), HasSubstr("\"action\":\"flying\""));
+    EXPECT_THAT(text(), HasSubstr("\"position\":[1.0,2.0,3.0]"));
+    EXPECT_THAT(text(), HasSubstr("\"battery\":0.5"));
+    EXPECT_THAT(text(), HasSubstr("\"state\":\"view\""));
+    std::filesystem::remove(folder.path() / "survey" / hold_name);
+    while (status.is_held()) std::this_thread::yield();
+  }
+  EXPECT_FALSE(std::filesystem::exists(file));
 }
 
 TEST(Serve, AnswersOneClientAtATime) {
