@@ -19,9 +19,9 @@ struct CloudSample {
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();
 };
 
-/// Reads about `max_points` points of a LAS or LAZ file, and all of a smaller one. A sample consists
-/// of short sequences of consecutive points, evenly distributed over the file; the other points are
-/// neither read nor decoded. Throws Error{bad_file}, also for a file without points.
+/// Reads about `max_points` points of a LAS or LAZ file, and all of a smaller one. A sample
+/// consists of short sequences of consecutive points, evenly distributed over the file; the other
+/// points are neither read nor decoded. Throws Error{bad_file}, also for a file without points.
 CloudSample sample_las_cloud(const std::filesystem::path& path, std::size_t max_points);
 
 }  // namespace skycap::geometry

@@ -79,8 +79,8 @@ Json sample_facts(const geometry::CloudSample& sample) {
   Json facts = Json::array({support::counted(sample.of, "point")});
   if (read < sample.of) facts.push_back("sample of " + support::counted(read, "point"));
   if (!sample.offset.isZero()) {
-    facts.push_back(fmt::format("coordinates minus {:.0f}, {:.0f} m", sample.offset.x(),
-                                sample.offset.y()));
+    facts.push_back(
+        fmt::format("coordinates minus {:.0f}, {:.0f} m", sample.offset.x(), sample.offset.y()));
   }
   return facts;
 }

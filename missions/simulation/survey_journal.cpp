@@ -137,8 +137,7 @@ void SurveyJournal::write_preview(std::span<const Eigen::Vector3f> cloud) {
     previewed_ = 0;
   }
   Json positions = Json::array();
-  const std::size_t first =
-      (previewed_ + preview_stride_ - 1) / preview_stride_ * preview_stride_;
+  const std::size_t first = (previewed_ + preview_stride_ - 1) / preview_stride_ * preview_stride_;
   for (std::size_t i = first; i < cloud.size(); i += preview_stride_) {
     for (const float coordinate : cloud[i]) {
       positions.push_back(std::lround(1000.0 * static_cast<double>(coordinate)));

@@ -8,8 +8,8 @@
 ///
 /// A second file contains a preview of the measured points for programs that show the survey while
 /// it is planned. Its first record contains the number `stride`, and each further record the points
-/// of a view: every `stride`-th point of the planner's cloud, in millimetres. The stride is doubled,
-/// and the file is rewritten, before the preview exceeds `max_preview_points`.
+/// of a view: every `stride`-th point of the planner's cloud, in millimetres. The stride is
+/// doubled, and the file is rewritten, before the preview exceeds `max_preview_points`.
 #pragma once
 
 #include <cstddef>

@@ -162,8 +162,10 @@ Json live_status(const WorkFolder& folder, const std::string& survey) {
   const fs::path file = folder.resolve(survey + "/" + online::status_name);
   const auto written = fs::last_write_time(file, failure);
   const bool is_running = !failure && fs::file_time_type::clock::now() - written < max_age;
-  Json json{{"running", is_running}, {"hold", fs::exists(folder.resolve(survey + "/" + online::hold_name))}};
-  if (is_running) json["status"] = geometry::parse_json<Json>(geometry::read_file(file, max_status));
+  Json json{{"running", is_running},
+            {"hold", fs::exists(folder.resolve(survey + "/" + online::hold_name))}};
+  if (is_running)
+    json["status"] = geometry::parse_json<Json>(geometry::read_file(file, max_status));
   return json;
 }
 

@@ -79,8 +79,8 @@ class LasReader {
   bool next(LasPoints& points, std::size_t max = 1 << 16);
 
   /// Replaces `points` with a fraction of the next points, and skips the others without decoding
-  /// them: of a chunk of a compressed file, otherwise of 4096 points. The fraction is in (0, 1], and
-  /// rounded up to one point. Returns false at the end of the file. Throws as next().
+  /// them: of a chunk of a compressed file, otherwise of 4096 points. The fraction is in (0, 1],
+  /// and rounded up to one point. Returns false at the end of the file. Throws as next().
   bool next_sample(LasPoints& points, double fraction);
 
   /// Replaces `records` with the next points in the uncompressed format of the file, including

@@ -3,7 +3,8 @@
 //
 //     from the studio  {objects: [{id, name, role, shape, points, bottom, top, direction, is_fixed}],
 //                       hidden: [layers and roles of volumes], tool: true or false,
-//                       survey: Float32Array with the points measured so far}
+//                       survey: Float32Array with the points measured so far,
+//                       shows_view: true to scroll to the 3-D view}
 //     to the studio    {ready: {ground, pad}}, {placed: [x, y, z]}, {moved: {id, points, is_over}},
 //                      {selected: id}
 //
@@ -36,7 +37,8 @@ class Editor {
 
   tell(message) { parent.postMessage(message, "*"); }
 
-  hear({ objects, hidden, tool, survey }) {
+  hear({ objects, hidden, tool, survey, shows_view: shows }) {
+    if (shows) this.panel.stage.scrollIntoView({ block: "nearest" });
     if (Array.isArray(hidden)) this.hide(hidden);
     if (survey instanceof Float32Array) this.show_survey(survey);
     if (Array.isArray(objects)) {

@@ -34,6 +34,7 @@ const screen_fragment = `
 uniform sampler2D picture, depths;
 uniform vec2 pixel;
 uniform float near, far, strength;
+uniform int samples;
 uniform vec3 above, below;
 varying vec2 place;
 float log_depth(vec2 at) {
@@ -49,11 +50,12 @@ void main() {
   }
   float own = log_depth(place), dark = 0.0;
   for (int i = 0; i < 16; ++i) {
+    if (i >= samples) break;
     float angle = 0.785398 * float(i), reach = i < 8 ? 1.0 : 3.2;
     vec2 at = place + pixel * reach * vec2(cos(angle), sin(angle));
     dark += min(max(0.0, own - log_depth(at)), 0.02) / (i < 8 ? 1.0 : 2.0);
   }
-  gl_FragColor = vec4(texture2D(picture, place).rgb * exp(-strength * dark / 12.0), 1.0);
+  gl_FragColor = vec4(texture2D(picture, place).rgb * exp(-strength * dark / (samples > 8 ? 12.0 : 8.0)), 1.0);
 }`;
 
 function point_material(spacing, least) {
@@ -75,7 +77,7 @@ function screen_material() {
     depthFunc: THREE.AlwaysDepth,
     uniforms: {
       picture: { value: null }, depths: { value: null }, pixel: { value: new THREE.Vector2() },
-      near: { value: 1 }, far: { value: 2 }, strength: { value: 190 },
+      near: { value: 1 }, far: { value: 2 }, strength: { value: 190 }, samples: { value: 16 },
       above: { value: new THREE.Color(0x1d2b38) }, below: { value: new THREE.Color(0x0c1217) },
     },
   });

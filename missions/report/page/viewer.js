@@ -4,13 +4,24 @@
 /// [ms].
 const fluent_frame = 40, rest = 250;
 
+/// Returns whether the browser draws without a graphics card. Antialiasing then takes much of the time.
+function is_software() {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  if (!gl) return true;
+  const name = gl.getParameter(gl.RENDERER), info = name === "WebKit WebGL" && gl.getExtension("WEBGL_debug_renderer_info");
+  const renderer = info ? gl.getParameter(info.UNMASKED_RENDERER_WEBGL) : name;
+  const release = gl.getExtension("WEBGL_lose_context");
+  if (release) release.loseContext();
+  return /swiftshader|llvmpipe|software|basic render/i.test(renderer);
+}
+
 class Viewer {
   constructor(canvas, data, clouds) {
     this.canvas = canvas;
     this.data = data;
     this.clouds = clouds;
     this.main = clouds.measured || clouds.model || null;
-    const context = canvas.getContext("webgl2", { antialias: true, preserveDrawingBuffer: true });
+    const context = canvas.getContext("webgl2", { antialias: !is_software() });
     if (!context) throw new Error("this browser does not support 3-D graphics (WebGL 2)");
     this.renderer = new THREE.WebGLRenderer({ canvas, context });
     this.renderer.autoClear = false;
@@ -154,6 +165,7 @@ class Viewer {
     uniforms.pixel.value.set(1.2 * this.ratio / target.width, 1.2 * this.ratio / target.height);
     uniforms.near.value = camera.near;
     uniforms.far.value = camera.far;
+    uniforms.samples.value = detail === 1 ? 16 : 8;
     renderer.clear();
     renderer.render(this.screen_scene, camera);
     renderer.render(this.shape_scene, camera);

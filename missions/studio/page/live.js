@@ -78,7 +78,7 @@ studio.steps.live = {
     const { running, hold, status } = answer, is_held = running && status.held;
     this.answer = answer;
     this.state.textContent = !running ? "Not running." + (hold ? " A hold is set: resume before the next flight." : "")
-      : is_held ? (hold ? "Held. " : "Resuming. ") + status.action : hold ? "Holding. " + status.action : "Running. " + status.action;
+      : (is_held ? (hold ? "Held: " : "Resuming: ") : hold ? "Holding: " : "Running: ") + status.action;
     this.state.className = is_held ? "bad" : running ? "good" : "";
     this.state.dataset.state = !running ? "ended" : is_held ? "held" : "running";
     const figures = running ? live_figures(status) : [];

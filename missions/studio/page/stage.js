@@ -17,6 +17,8 @@ function make_stage(title, listeners) {
     const act = (action) => Promise.resolve(action).catch((failure) => say(failure.message));
     if (ready) {
       stage.is_ready = true;
+      if (stage.is_new) send({ shows_view: true });
+      stage.is_new = false;
       if (listeners.ready) {
         listeners.ready({ ground: Number.isFinite(ready.ground) ? ready.ground : 0, pad: is_place(ready.pad) ? ready.pad : null });
       }
@@ -31,7 +33,7 @@ function make_stage(title, listeners) {
   });
   return Object.assign(stage, {
     show(path) {
-      Object.assign(stage, { path, is_ready: false });
+      Object.assign(stage, { path, is_ready: false, is_new: true });
       delete node.dataset.ready;
       show_in(node, path);
     },

@@ -1,5 +1,4 @@
 #include "geometry/io/cloud_io.h"
-#include "geometry/io/cloud_sample.h"
 
 #include <cstring>
 #include <limits>
@@ -11,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/error.h"
+#include "geometry/io/cloud_sample.h"
 #include "geometry/io/file.h"
 #include "tests/support/temporary_folder.h"
 

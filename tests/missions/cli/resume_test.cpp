@@ -118,8 +118,7 @@ TEST_F(ResumedPlan, MatchesUninterruptedPlanAfterTwoInterruptions) {
 
 /// Points of the preview in millimetres.
 std::vector<std::array<long, 3>> preview_in(const fs::path& folder, std::size_t stride) {
-  const std::vector<std::string> records =
-      geometry::read_records(folder / "survey.points").records;
+  const std::vector<std::string> records = geometry::read_records(folder / "survey.points").records;
   EXPECT_EQ(nlohmann::json::parse(records.at(0)).at("stride"), stride);
   std::vector<std::array<long, 3>> points;
   for (std::size_t i = 1; i < records.size(); ++i) {

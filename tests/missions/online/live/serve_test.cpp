@@ -65,13 +65,13 @@ class Served {
       const Rehearsal& rehearsal, ServerEndpoint endpoint,
       std::function<bool()> is_held = [] { return false; })
       : survey_(rehearsal.open(folder_.path() / "survey")),
-        session_(rehearsal.setup().name, rehearsal.setup().flight(), rehearsal.setup().live,
-                 survey_,
-                 [this] {
-                   record_ = survey_.finish();
-                   return std::string("done");
-                 },
-                 [] {}, std::move(is_held)),
+        session_(
+            rehearsal.setup().name, rehearsal.setup().flight(), rehearsal.setup().live, survey_,
+            [this] {
+              record_ = survey_.finish();
+              return std::string("done");
+            },
+            [] {}, std::move(is_held)),
         server_(std::move(endpoint)),
         thread_([this](const std::stop_token& stop) {
           server_.run(
