@@ -38,7 +38,7 @@ class Editor {
   tell(message) { parent.postMessage(message, "*"); }
 
   hear({ objects, hidden, tool, survey, shows_view: shows }) {
-    if (shows) this.panel.stage.scrollIntoView({ block: "nearest" });
+    if (shows) this.panel.stage.scrollIntoView({ block: "start" });
     if (Array.isArray(hidden)) this.hide(hidden);
     if (survey instanceof Float32Array) this.show_survey(survey);
     if (Array.isArray(objects)) {
