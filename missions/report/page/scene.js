@@ -71,10 +71,10 @@ function clearance_colour(clearance, asked) {
   return along(nearness_stops, (clearance - asked) / told_apart);
 }
 
-/// Returns indices in an order whose prefixes are evenly distributed: every 64th, then those that
-/// every 32nd adds, and so on.
+/// Returns indices in an order whose prefixes are evenly distributed: about 500 of them, then those
+/// that half the step adds, and so on.
 function sparse_first(count) {
-  const order = new Uint32Array(count), widest = 64;
+  const order = new Uint32Array(count), widest = 2 ** Math.max(6, Math.floor(Math.log2(count / 500)));
   let next = 0;
   for (let i = 0; i < count; i += widest) order[next++] = i;
   for (let step = widest / 2; step >= 1; step /= 2) {
