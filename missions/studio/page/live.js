@@ -69,7 +69,7 @@ studio.steps.live = {
     const { files } = await request("package?path=" + encodeURIComponent(this.path));
     if (!files.some((file) => file.path === "report.html")) return;
     this.is_shown = true;
-    this.stage.show(page);
+    this.stage.show(page, true);
   },
   async request_hold(held) {
     this.show(await request("live", { path: this.path, held }));

@@ -32,8 +32,9 @@ function make_stage(title, listeners) {
     }
   });
   return Object.assign(stage, {
-    show(path) {
-      Object.assign(stage, { path, is_ready: false, is_new: true });
+    /// Shows a page, with `scrolls` at its 3-D view.
+    show(path, scrolls = false) {
+      Object.assign(stage, { path, is_ready: false, is_new: scrolls });
       delete node.dataset.ready;
       show_in(node, path);
     },
