@@ -270,9 +270,8 @@ RouteOptions FlightOptions::route(const Vector3d& pad) const {
 double FlightOptions::braking_before_return() const {
   const Vehicle& flown = required_vehicle();
   // DJI aircraft stop at their maximum acceleration, without a margin for position control.
-  return flown.autopilot == AutopilotType::dji
-             ? cruise_speed * cruise_speed / (2.0 * flown.mode.acceleration)
-             : braking_distance(flown.mode, cruise_speed);
+  return flown.autopilot == AutopilotType::dji ? stopping_distance(flown, {cruise_speed, 0.0, 0.0})
+                                               : braking_distance(flown.mode, cruise_speed);
 }
 
 double FlightOptions::rest_before() const {

@@ -1,10 +1,13 @@
 #include "flight/interpreter/interpret.h"
 
+#include <cmath>
+
 #include "flight/export/map_files.h"
 #include "flight/export/trajectory_file.h"
 #include "flight/interpreter/mission_interpreter.h"
 #include "flight/interpreter/photographs.h"
 #include "flight/interpreter/wpml_interpreter.h"
+#include "flight/motion/motion.h"
 #include "geometry/angle.h"
 #include "geometry/error.h"
 #include "geometry/io/file.h"
@@ -83,6 +86,13 @@ InterpretedRoute interpret(const std::string& content, Format format, const Flig
     geometry::require_valid_position(segment.start.from, segment.from_item);
     geometry::require_valid_position(segment.start.to, segment.from_item);
     geometry::require_valid_position(segment.to, segment.to_item);
+  }
+  for (std::size_t i = 0; facts.vehicle && i + 1 < route.segments.size(); ++i) {
+    InterpretedSegment& segment = route.segments[i];
+    if (route.segments[i + 1].start.length() == 0.0) continue;  // The vehicle stops.
+    const double speed = std::isnan(segment.speed) ? facts.cruise_speed : segment.speed;
+    const Eigen::Vector3d direction = (segment.to - segment.start.to).stableNormalized();
+    segment.braking = stopping_distance(*facts.vehicle, speed * direction);
   }
   return route;
 }

@@ -1,6 +1,7 @@
 #include "flight/interpreter/interpreted_route.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace skycap::flight {
 namespace {
@@ -29,13 +30,38 @@ LegVerification verify_fan(const FreeSpace& space, const Segment& start, const E
   return second.is_verified && first.clearance < second.clearance ? first : second;
 }
 
-std::string describe(const InterpretedSegment& segment, const LegVerification& verification,
-                     const FreeSpace& space) {
+std::string distance_text(const LegVerification& verification, const FreeSpace& space) {
   const Eigen::Vector3d& position = verification.closest.on_leg;
-  return "leg from " + segment.from_item + " to " + segment.to_item + ": " +
-         fixed(verification.closest.distance, 2) + " m from " + space.name(verification.closest) +
+  return fixed(verification.closest.distance, 2) + " m from " + space.name(verification.closest) +
          " at (" + fixed(position.x(), 2) + ", " + fixed(position.y(), 2) + ", " +
          fixed(position.z(), 2) + ")";
+}
+
+std::string describe(const InterpretedSegment& segment, const LegVerification& verification,
+                     const FreeSpace& space) {
+  return "leg from " + segment.from_item + " to " + segment.to_item + ": " +
+         distance_text(verification, space);
+}
+
+/// Verifies the paths on which an interrupted vehicle brakes from the corner between two pieces.
+LegVerification verify_braking(const FreeSpace& space, const InterpretedSegment& piece,
+                               const InterpretedSegment& next, double clearance, double up_to) {
+  const Eigen::Vector3d& corner = piece.to;
+  const Eigen::Vector3d in = (piece.to - piece.start.to).stableNormalized();
+  const Eigen::Vector3d out = (next.to - piece.to).stableNormalized();
+  const Segment tips{corner + piece.braking * in, corner + piece.braking * out};
+  LegVerification straight = verify(space, {corner, tips.from}, clearance + piece.margin, up_to);
+  if (!straight.is_verified) return straight;
+  // Paths of equal length end on an arc, whose height above its chord is the distance of the
+  // chord from the circle.
+  const double chord = 0.5 * tips.length();
+  const double arc =
+      piece.braking - std::sqrt(std::max(0.0, piece.braking * piece.braking - chord * chord));
+  const double beside = arc + std::max(piece.margin, next.margin);
+  LegVerification verification =
+      verify_fan(space, tips, corner, clearance + beside, up_to + beside);
+  verification.clearance -= beside;
+  return verification;
 }
 
 }  // namespace
@@ -56,6 +82,16 @@ RouteVerification verify(const InterpretedRoute& route, const FreeSpace& space,
     const double known =
         verification.is_verified ? verification.clearance : verification.closest.distance;
     result.clearance = std::min(result.clearance, known);
+  }
+  for (std::size_t i = 0; i + 1 < route.segments.size(); ++i) {
+    const InterpretedSegment& segment = route.segments[i];
+    if (segment.braking <= 0.0) continue;
+    const LegVerification verification =
+        verify_braking(space, segment, route.segments[i + 1], clearance, up_to);
+    if (verification.is_verified) continue;
+    result.problems.push_back(
+        "braking beyond " + segment.to_item +
+        " if the flight is interrupted: " + distance_text(verification, space));
   }
   return result;
 }

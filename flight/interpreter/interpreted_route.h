@@ -27,6 +27,9 @@ struct InterpretedSegment {
   double hold = 0.0;           ///< Wait at the end, as specified in the file [s].
   double speed = unspecified;  ///< Ground speed, if specified in the file [m/s].
   double margin = 0.0;         ///< Maximum distance of the actual start from `start` [m].
+  /// Distance over which the vehicle comes to rest if it is interrupted at the end of the piece
+  /// [m]. Positive only at the corners that it passes.
+  double braking = 0.0;
 };
 
 /// Position at which photos are taken.
@@ -66,6 +69,10 @@ struct RouteVerification {
 
 /// Verifies every piece at `clearance` [m], with a search distance of `up_to` [m]. Pieces above the
 /// pad are verified in `pad_space`, which should not contain the ground there.
+///
+/// An interrupted vehicle, for example one that returns, brakes along its piece. Where it passes
+/// the corner at the end, it may brake beyond it, in any direction between those of both pieces.
+/// These paths are verified at the same clearance.
 RouteVerification verify(const InterpretedRoute& route, const FreeSpace& space,
                          const FreeSpace& pad_space, double clearance, double up_to);
 

@@ -13,6 +13,10 @@ namespace {
 
 using Eigen::Vector3d;
 
+/// Time constant of ArduCopter's position control, 1 / PSC_POSXY_P [s], and the number of time
+/// constants until a vehicle counts as at rest.
+constexpr double gain_time = 1.0, settled = 4.0;
+
 /// Returns the shorter rotation between two headings [rad], 0 if one is not given.
 double turn_between(double from_deg, double to_deg) {
   if (std::isnan(from_deg) || std::isnan(to_deg)) return 0.0;
@@ -239,11 +243,46 @@ double braking_time(const ScriptedLeg& leg, double jerk, double time) {
 
 SetPoint braking_point(const ScriptedLeg& leg, double jerk, double time, double braking) {
   const MotionState begin = state_on(leg, jerk, time);
-  const double t = std::min(braking, braking_time(leg, jerk, time));
+  const double rest = braking_time(leg, jerk, time), t = std::min(braking, rest);
   const double length = (leg.to - leg.from).norm();
+  constexpr double rounding = 1e-9;
   MotionState state{begin.distance + t * (begin.speed - 0.5 * leg.acceleration * t),
-                    begin.speed - leg.acceleration * t, 0.0};
+                    begin.speed - leg.acceleration * t,
+                    t < rest - rounding ? -leg.acceleration : 0.0};
   if (state.distance >= length && !leg.is_piece) state = {length, 0.0, 0.0};
+  return at(leg, state);
+}
+
+double recall_time(const ScriptedLeg& leg, const Vehicle& vehicle, double time) {
+  const double jerk = vehicle.mode.jerk;
+  const double speed = state_on(leg, jerk, time).speed;
+  if (vehicle.autopilot != AutopilotType::ardupilot || speed <= 0.0)
+    return braking_time(leg, jerk, time);
+  return std::max(0.0, speed / leg.acceleration - gain_time) + settled * gain_time;
+}
+
+SetPoint recall_point(const ScriptedLeg& leg, const Vehicle& vehicle, double time, double braking) {
+  const double jerk = vehicle.mode.jerk;
+  const MotionState begin = state_on(leg, jerk, time);
+  if (vehicle.autopilot != AutopilotType::ardupilot || begin.speed <= 0.0)
+    return braking_point(leg, jerk, time, braking);
+  // Constant deceleration, then the speed decays with the time constant of the position control.
+  const Vector3d velocity = begin.speed * (leg.to - leg.from).normalized();
+  const double stop = begin.distance + stopping_distance(vehicle, velocity);
+  const double linear = std::max(0.0, begin.speed / leg.acceleration - gain_time);
+  const double t = std::min(braking, linear);
+  MotionState state{begin.distance + t * (begin.speed - 0.5 * leg.acceleration * t),
+                    begin.speed - t * leg.acceleration, -leg.acceleration};
+  if (braking >= recall_time(leg, vehicle, time)) {
+    state = {stop, 0.0, 0.0};
+  } else if (braking > linear) {
+    state.speed *= std::exp((linear - braking) / gain_time);
+    state.distance = stop - state.speed * gain_time;
+    state.acceleration = -state.speed / gain_time;
+  }
+  // Above the pad, the descent ends on the ground.
+  const double length = (leg.to - leg.from).norm();
+  if (leg.is_over_pad && state.distance > length) state = {length, 0.0, 0.0};
   return at(leg, state);
 }
 

@@ -48,6 +48,13 @@ SetPoint braking_point(const ScriptedLeg& leg, double jerk, double time, double 
 /// Returns the braking time after an abort at `time` [s].
 double braking_time(const ScriptedLeg& leg, double jerk, double time);
 
+/// Return the braking time and the setpoint `braking` [s] after the autopilot of `vehicle` has
+/// interrupted the leg at `time` [s], for example for a return. PX4 and DJI vehicles brake as in
+/// braking_point(). ArduCopter computes its stopping point from the speed only
+/// (flight::braking_distance()), so that it passes a stop by up to return_overshoot().
+double recall_time(const ScriptedLeg& leg, const Vehicle& vehicle, double time);
+SetPoint recall_point(const ScriptedLeg& leg, const Vehicle& vehicle, double time, double braking);
+
 /// Returns a leg from rest to rest with the duration from `motion`, without a wait.
 ScriptedLeg scripted_leg(const Motion& motion, const Eigen::Vector3d& from,
                          const Eigen::Vector3d& to);

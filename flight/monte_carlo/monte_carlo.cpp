@@ -139,7 +139,9 @@ std::size_t flights_nearer(const FlyTest& test, std::span<const ClearanceCriteri
                            std::size_t criterion) {
   return static_cast<std::size_t>(
       std::ranges::count_if(test.flights, [&](const TestFlight& flight) {
-        return flight.simulated.nearest[criterion].closest.distance < criteria[criterion].limit;
+        const double overshoot = flight.draw.return_time ? criteria[criterion].overshoot : 0.0;
+        return flight.simulated.nearest[criterion].closest.distance <
+               criteria[criterion].limit - overshoot;
       }));
 }
 

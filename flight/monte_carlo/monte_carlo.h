@@ -52,7 +52,8 @@ struct FlyTest {
 FlyTest fly_test(const SimulatedMission& mission, std::span<const ClearanceCriterion> criteria,
                  const FlyTestOptions& options);
 
-/// Returns the number of flights that violate the limit of a judge.
+/// Returns the number of flights that violate the limit of a judge. The limit of flights with a
+/// return is lower by ClearanceCriterion::overshoot.
 std::size_t flights_nearer(const FlyTest& test, std::span<const ClearanceCriterion> criteria,
                            std::size_t criterion);
 

@@ -98,7 +98,7 @@ FlightScript return_script(const RtlProfile& rtl_profile, const Motion& motion,
   }
   if (autopilot == AutopilotType::ardupilot) script.back().wait += ardupilot_hold;
   const double vouched = std::min(over.z(), seam);
-  append(landing_leg(motion, over, vouched, foot), false);
+  if (over.z() > vouched) append(landing_leg(motion, over, vouched, foot), false);
   append(landing_leg(motion, at_height(over, vouched), foot, foot), true);
   return script;
 }

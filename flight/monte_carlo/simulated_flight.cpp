@@ -69,11 +69,17 @@ class Simulation {
     const double return_time = is_returning_ ? end : std::min(end, draw_.return_time.value_or(end));
     while (time_ < return_time) advance(leg, set_point(leg, jerk(), time_ - begin));
     if (is_returning_ || return_time >= end) return false;
-    const double called = time_, rest = called + braking_time(leg, jerk(), called - begin);
-    while (time_ < rest) {
-      advance(leg, braking_point(leg, jerk(), called - begin, time_ - called));
+    // A vehicle that has landed no longer returns.
+    if (leg.is_over_pad && &leg == &mission_.script.back() && time_ - begin >= leg.moving) {
+      while (time_ < end) advance(leg, set_point(leg, jerk(), time_ - begin));
+      return false;
     }
-    position_ = braking_point(leg, jerk(), called - begin, rest - called).position;
+    const Vehicle& vehicle = mission_.motion.vehicle();
+    const double called = time_, rest = called + recall_time(leg, vehicle, called - begin);
+    while (time_ < rest) {
+      advance(leg, recall_point(leg, vehicle, called - begin, time_ - called));
+    }
+    position_ = recall_point(leg, vehicle, called - begin, rest - called).position;
     return true;
   }
 

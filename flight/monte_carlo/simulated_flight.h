@@ -22,6 +22,9 @@ struct ClearanceCriterion {
   const FreeSpace& pad_space;
   double limit = 0.0;         ///< Minimum distance of flights with wind and errors [m].
   double return_limit = 0.0;  ///< Minimum distance of returns along the exact lines of the law [m].
+  /// Distance by which the limit of interrupted flights is lower: they may pass a stop by as much
+  /// (stop_overshoot()) [m].
+  double overshoot = 0.0;
 };
 
 /// Mission file prepared for simulation.

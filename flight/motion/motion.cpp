@@ -186,12 +186,24 @@ double Motion::leg_speed(const Vector3d& direction) const {
 }
 
 double Motion::leg_acceleration(const Vector3d& direction) const {
+  return acceleration_along(vehicle_.mode, direction);
+}
+
+double acceleration_along(const MissionMode& mode, const Vector3d& direction) {
   const double horizontal = direction.head<2>().norm(), vertical = std::abs(direction.z());
-  const MissionMode& mode = vehicle_.mode;
   if (vertical * mode.acceleration > horizontal * mode.vertical_acceleration) {
     return mode.vertical_acceleration / vertical;
   }
   return mode.acceleration / horizontal;
+}
+
+double stopping_distance(const Vehicle& vehicle, const Vector3d& velocity) {
+  const double speed = velocity.norm();
+  if (speed == 0.0) return 0.0;
+  MissionMode mode = vehicle.mode;
+  mode.acceleration = acceleration_along(mode, velocity / speed);
+  return vehicle.autopilot == AutopilotType::ardupilot ? braking_distance(mode, speed)
+                                                       : 0.5 * speed * speed / mode.acceleration;
 }
 
 double Motion::moving_time(const Vector3d& displacement) const {

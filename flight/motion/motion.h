@@ -48,6 +48,15 @@ MotionState rest_to_rest_state(double distance, double speed, double acceleratio
 /// acceleration [s].
 double turn_time(double angle, double rate, double acceleration);
 
+/// Returns the acceleration in `direction` (unit vector) within the horizontal and vertical limits
+/// [m/s^2].
+double acceleration_along(const MissionMode& mode, const Eigen::Vector3d& direction);
+
+/// Returns the distance over which the autopilot brings the vehicle to rest from `velocity` [m/s]
+/// if the mission is interrupted, for example by a return [m]. DJI and PX4 vehicles brake with the
+/// acceleration of the mission mode, ArduCopter as in braking_distance().
+double stopping_distance(const Vehicle& vehicle, const Eigen::Vector3d& velocity);
+
 /// Time and energy model of one vehicle in given conditions.
 class Motion {
  public:

@@ -41,4 +41,8 @@ void Vehicle::validate() const {
   mode.validate(name);
 }
 
+double stop_overshoot(const Vehicle& vehicle) {
+  return vehicle.autopilot == AutopilotType::ardupilot ? return_overshoot(vehicle.mode) : 0.0;
+}
+
 }  // namespace skycap::flight

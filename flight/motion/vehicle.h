@@ -64,4 +64,8 @@ struct Vehicle {
   void validate() const;
 };
 
+/// Returns the maximum distance by which the vehicle passes a stop if the mission is interrupted
+/// shortly before it: return_overshoot() with ArduCopter, otherwise zero [m].
+double stop_overshoot(const Vehicle& vehicle);
+
 }  // namespace skycap::flight

@@ -168,11 +168,34 @@ class RoutePlanner {
     }
   }
 
+  /// Adds the paths on which an interrupted vehicle brakes beyond a waypoint that it passes. They
+  /// are so close that all others are within the slack of the proof.
+  void add_braking(std::size_t index, std::vector<Segment>& legs) const {
+    const CapturePoint& passed = route_.capture_points[index];
+    if (!passed.is_passed || passed.leg_time <= 0.0) return;
+    const Vector3d corner = passed.view.position;
+    const Vector3d leg = corner - route_.capture_points[index - 1].view.position;
+    const Vector3d next = route_.capture_points[index + 1].view.position - corner;
+    if (leg.norm() == 0.0 || next.norm() == 0.0) return;
+    const double speed =
+        std::min(route_.options.conditions.cruise_speed, leg.norm() / passed.leg_time);
+    const Vector3d in = leg.normalized(), out = next.normalized();
+    const double braking = stopping_distance(route_.vehicle, speed * in);
+    const double spread = braking * (out - in).norm();
+    const auto count = static_cast<int>(std::ceil(spread / (2.0 * return_slack)));
+    for (int i = 0; i <= count; ++i) {
+      const double share = count > 0 ? static_cast<double>(i) / count : 0.0;
+      const Vector3d direction = ((1.0 - share) * in + share * out).stableNormalized();
+      legs.push_back({corner, corner + braking * direction});
+    }
+  }
+
   void verify_route_returns() {
     std::vector<Segment> legs;
     for (const Sortie& sortie : route_.sorties) {
       const std::vector<Vector3d> points = sortie_points(route_, sortie);
       for (std::size_t i = 1; i < points.size(); ++i) legs.push_back({points[i - 1], points[i]});
+      for (std::uint32_t i = sortie.first + 1; i < sortie.last; ++i) add_braking(i, legs);
     }
     RtlProfile rtl_profile = legs_.returns()->rtl_profile();
     rtl_profile.reserve = 0.0;

@@ -130,16 +130,17 @@ class TestedPackage {
   }
 
   /// Returns the clearance criteria. Legs are verified with the full clearance; flown paths may
-  /// deviate by the errors included in it.
-  std::vector<flight::ClearanceCriterion> criteria(double position_error) const {
+  /// deviate by the errors included in it, and those of interrupted flights by `overshoot`.
+  std::vector<flight::ClearanceCriterion> criteria(double position_error, double overshoot) const {
     const double verified_clearance =
         flight::return_clearance(flight().clearance) - flight::rounding_bound;
     const double strayed = verified_clearance - flight().tracking_error - position_error;
     std::vector<flight::ClearanceCriterion> criteria{
-        {"unknown or occupied space", space_, pad_space_, strayed, verified_clearance}};
+        {"unknown or occupied space", space_, pad_space_, strayed, verified_clearance, overshoot}};
     if (truth_) {
       criteria.push_back({"the scene (ground truth)", truth_->everywhere, truth_->over_pad,
-                          strayed - flight().map_error, verified_clearance - flight().map_error});
+                          strayed - flight().map_error, verified_clearance - flight().map_error,
+                          overshoot});
     }
     return criteria;
   }
@@ -218,7 +219,7 @@ TestedFile test_file(const FlyTestCommandOptions& options, const TestedPackage& 
     progress.show(fmt::format("{}: flight {} of {}", name, count, options.flights));
   };
   const std::vector<flight::ClearanceCriterion> criteria =
-      package.criteria(flight_options.position_error);
+      package.criteria(flight_options.position_error, stop_overshoot(mission.motion.vehicle()));
   TestedFile tested{name,
                     to_string(autopilot),
                     criteria,

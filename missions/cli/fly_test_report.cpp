@@ -105,10 +105,14 @@ std::string criterion_text(const TestedFile& file, std::size_t j) {
   const flight::ClearanceCriterion& criterion = file.criteria[j];
   const Distribution distances = clearance(file, j);
   std::string text = fmt::format(
-      "  clearance minimum {:.2f} m to {}, 5% below {:.2f}, median {:.2f}; required {:.2f}, {} "
+      "  clearance minimum {:.2f} m to {}, 5% below {:.2f}, median {:.2f}; required {:.2f}{}, {} "
       "flights below\n",
       distances.percentile(0), criterion.name, distances.percentile(5), distances.percentile(50),
-      criterion.limit, flights_nearer(file.test, file.criteria, j));
+      criterion.limit,
+      criterion.overshoot > 0.0
+          ? fmt::format(" ({:.2f} with a return)", criterion.limit - criterion.overshoot)
+          : "",
+      flights_nearer(file.test, file.criteria, j));
   const TestFlight& nearest = nearest_flight(file, j);
   const flight::NearestApproach& approach = nearest.simulated.nearest[j];
   if (approach.closest.kind != flight::ObstacleKind::none) {
@@ -178,6 +182,7 @@ Json to_json(const TestedFile& file) {
   for (std::size_t j = 0; j < file.criteria.size(); ++j) {
     Json clearances{{"from", file.criteria[j].name},
                     {"allowed_m", file.criteria[j].limit},
+                    {"allowed_with_return_m", file.criteria[j].limit - file.criteria[j].overshoot},
                     {"flights_nearer", flights_nearer(file.test, file.criteria, j)},
                     {"distance_m", clearance(file, j).json()}};
     if (!file.test.returns.empty() && file.test.returns[j].simulated > 0) {

@@ -237,15 +237,12 @@ void check_flight(const MissionDocument& document) {
                                             " m; raise it or lower the errors");
   }
   const flight::Vehicle& vehicle = flight.required_vehicle();
-  const double overshoot = flight::return_overshoot(vehicle.mode);
-  if (vehicle.autopilot == flight::AutopilotType::ardupilot &&
-      budget.tracking_error + std::max(0.0, budget.margin) < overshoot) {
+  const double overshoot = flight::stop_overshoot(vehicle);
+  if (budget.margin < overshoot) {
     document.reject(
         "flight.clearance",
         "must be at least " +
-            short_text(std::ceil(100.0 * (budget.total() - budget.tracking_error - budget.margin +
-                                          overshoot)) /
-                       100.0) +
+            short_text(std::ceil(100.0 * (budget.total() - budget.margin + overshoot)) / 100.0) +
             " m, because a return of ArduCopter that begins shortly before a stop passes it by up "
             "to " +
             short_text(std::ceil(100.0 * overshoot) / 100.0) + " m; raise it");

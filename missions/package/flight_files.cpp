@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <string_view>
@@ -15,6 +16,7 @@
 #include "flight/interpreter/verified_export.h"
 #include "geometry/error.h"
 #include "missions/package/fleet/timetable_file.h"
+#include "missions/support/number_text.h"
 
 namespace skycap::missions::package {
 namespace {
@@ -29,13 +31,24 @@ constexpr std::array litchi_formats{Format::litchi, Format::kml, Format::geojson
 
 /// Returns the requirement of a format that the mission does not meet; empty if it meets all.
 std::string what_is_missing_for(Format format, const flight::FlightOptions& options) {
+  const flight::Vehicle& vehicle = options.required_vehicle();
+  if (format == Format::waypoints && vehicle.autopilot == AutopilotType::dji) {
+    const double lack =
+        flight::stop_overshoot(options.vehicle_for(vehicle, AutopilotType::ardupilot)) -
+        options.budget().margin;
+    if (lack > 0.0) {
+      return "requires a larger margin, because an interrupted ArduCopter vehicle passes its stop; "
+             "raise flight.clearance by " +
+             support::short_text(std::ceil(100.0 * lack) / 100.0) + " m";
+    }
+  }
   if (flight::is_local(format)) return "";
   if (!options.is_georeferenced) {
     return "requires a georeference; set site.latitude_deg and site.longitude_deg";
   }
   const bool has_sea_level =
       format == Format::plan || format == Format::kml ||
-      (format == Format::waypoints && options.required_vehicle().autopilot != AutopilotType::px4);
+      (format == Format::waypoints && vehicle.autopilot != AutopilotType::px4);
   if (!has_sea_level || options.site.geoid_undulation) return "";
   return "requires heights above mean sea level; set site.geoid_undulation";
 }

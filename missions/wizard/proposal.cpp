@@ -94,7 +94,8 @@ std::string make_sensor(const SiteRequest& request) {
 /// The clearance that is proposed at least, or what the vehicle's size and errors take, with half a
 /// metre to spare, to the next half metre.
 double clearance_for(const flight::Vehicle& vehicle) {
-  constexpr double margin = 0.5, unit = 0.5;
+  constexpr double min_margin = 0.5, unit = 0.5;
+  const double margin = std::max(min_margin, flight::stop_overshoot(vehicle));
   const flight::FlightOptions usual;
   const double errors = vehicle.position_error + usual.tracking_error + usual.map_error;
   return std::max(proposed_clearance, rounded_up(vehicle.radius + errors + margin, unit));
