@@ -113,6 +113,16 @@ GainField GainField::from_known_surface(const SurfelMap& map, const geometry::Ca
   return field;
 }
 
+GainField GainField::with_targets(std::vector<Target> targets) const {
+  GainField field = *this;
+  field.targets_ = std::move(targets);
+  field.sources_.clear();
+  field.positions_ = field.normals_ = {};
+  field.surfel_targets_ = field.first_prior_ = field.end_prior_ = field.targets_.size();
+  field.index_targets();
+  return field;
+}
+
 void GainField::index_targets() {
   for (const Target& target : targets_) {
     append(positions_, target.position);

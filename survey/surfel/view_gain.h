@@ -71,6 +71,9 @@ class GainField {
     Eigen::Vector3f normal;
     float weight;  ///< expected uncovered area [m^2]
   };
+  /// Returns a field with the same occluders and other targets, which are assumed to exist.
+  GainField with_targets(std::vector<Target> targets) const;
+
   std::span<const Target> targets() const { return targets_; }
   /// Returns the index of the surfel of target `i`, or of its unobserved patch if is_patch().
   std::uint32_t source(std::size_t target) const { return sources_[target]; }

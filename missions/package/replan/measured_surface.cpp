@@ -25,8 +25,9 @@ constexpr double half_side = 0.71;
 constexpr double near_target = 2.5;
 
 /// Maximum distance between the rays on a wall at the view distance, in units of the point spacing.
-/// The stored points are then nearly those of the full image.
-constexpr double ray_spacing = 0.5;
+/// Half of it costs four times as much and changes the difference between two missions by less than
+/// 0.1 percentage points.
+constexpr double ray_spacing = 1.0;
 
 constexpr std::size_t max_samples = 100'000;
 
@@ -61,7 +62,7 @@ evaluation::SimulationOptions on_points(evaluation::SimulationOptions options) {
   return options;
 }
 
-std::vector<Vector3f> every_nth(const std::vector<Vector3f>& points) {
+std::vector<Vector3f> every_nth(std::span<const Vector3f> points) {
   const std::size_t stride = points.size() / max_samples + 1;
   std::vector<Vector3f> samples;
   for (std::size_t i = 0; i < points.size(); i += stride) samples.push_back(points[i]);
@@ -76,6 +77,7 @@ MeasuredSurface::MeasuredSurface(const evaluation::SimulationOptions& options,
                                  unsigned threads)
     : options_(on_points(options)),
       samples_(every_nth(cloud.positions)),
+      normals_(every_nth(normals)),
       scene_(squares(cloud.positions, normals, options.survey.planner.spacing), threads),
       seed_(seed),
       threads_(threads) {}
@@ -91,6 +93,16 @@ double MeasuredSurface::predicted_reflight(const std::vector<session::ViewInFlig
     meter.add(cloud.store(scan.points, options_.scene_box()));
   }
   return meter.share();
+}
+
+std::vector<survey::surfel::GainField::Target> MeasuredSurface::targets(
+    std::size_t max_count) const {
+  std::vector<survey::surfel::GainField::Target> targets;
+  const std::size_t stride = (samples_.size() + max_count - 1) / max_count;
+  for (std::size_t i = 0; i < samples_.size(); i += stride) {
+    targets.push_back({samples_[i], normals_[i], 1.0F});
+  }
+  return targets;
 }
 
 std::vector<std::uint8_t> MeasuredSurface::in_sight(const Vector3d& position,

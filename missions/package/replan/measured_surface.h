@@ -12,6 +12,7 @@
 #include "missions/evaluation/simulation_options.h"
 #include "missions/session/view_in_flight.h"
 #include "sim/scene/scene.h"
+#include "survey/surfel/view_gain.h"
 
 namespace skycap::missions::package {
 
@@ -30,6 +31,9 @@ class MeasuredSurface {
   double predicted_reflight(const std::vector<session::ViewInFlight>& views,
                             const std::stop_token& stop = {}) const;
 
+  /// Returns at most `max_count` of the points with equal weights as targets of views.
+  std::vector<survey::surfel::GainField::Target> targets(std::size_t max_count) const;
+
   /// Returns 1 for each target that a camera at `position` can see, otherwise 0. Surface close to a
   /// target does not occlude it.
   std::vector<std::uint8_t> in_sight(const Eigen::Vector3d& position,
@@ -37,7 +41,7 @@ class MeasuredSurface {
 
  private:
   evaluation::SimulationOptions options_;
-  std::vector<Eigen::Vector3f> samples_;
+  std::vector<Eigen::Vector3f> samples_, normals_;  ///< Sampled points and their normals.
   sim::Scene scene_;
   std::uint64_t seed_;
   unsigned threads_;

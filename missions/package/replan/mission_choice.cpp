@@ -41,6 +41,13 @@ constexpr double equal_reflight = 5e-3;
 /// views whose coverage it overestimates.
 constexpr double reflight_margin = 6e-3;
 
+/// Number of measured points that the search covers if re-flights are compared. With half as many,
+/// it selects views for these points instead of the surface.
+constexpr std::size_t point_targets = 12'000;
+
+/// Fraction of the moves in a search that covers measured points.
+constexpr std::size_t point_moves = 3, all_moves = 17;
+
 /// Penalty per view in fly-through capture [s]. Without it, tours would have so many views that
 /// moves of single views have no effect.
 constexpr double fly_through_price = 0.3;
@@ -383,7 +390,11 @@ MissionChoice choose_mission(const flight::FlightOptions& flight,
                              const std::vector<View>& surveyed, flight::Route present,
                              const PlanRoute& plan, const std::stop_token& stop) {
   const auto begin = std::chrono::steady_clock::now();
-  const MissionProblem asked(flight, planner, options, surface, space, present);
+  std::optional<GainField> points;
+  if (options.keeps_reflight) {
+    points = surface.with_targets(options.measured->targets(point_targets));
+  }
+  const MissionProblem asked(flight, planner, options, points ? *points : surface, space, present);
   const TourProblem& problem = asked.problem();
   const std::vector<View> views = asked.collect_views(present);
   const auto predicted_reflight = [&](const flight::Route& route) -> std::optional<double> {
@@ -436,7 +447,9 @@ MissionChoice choose_mission(const flight::FlightOptions& flight,
   SearchSettings search = options.search;
   if (problem.leg_observations) search.moves_per_view /= leg_cost_factor;
   if (problem.bend_time) search.moves_per_view *= more_passed_views;
-  if (options.keeps_reflight) search.moves_per_view = search.moves_per_view * 3 / 5;
+  if (options.keeps_reflight) {
+    search.moves_per_view = search.moves_per_view * point_moves / all_moves;
+  }
   const double margin = options.keeps_reflight ? reflight_margin : 0.0;
   try_tour(anneal(problem, spared.views, target_coverage + margin, search, stop));
 
