@@ -145,8 +145,12 @@ TEST(Fleet, RejectsTimetablesThatContradictFiles) {
 
   CorruptedFleet moved;
   json plan = json::parse(read_content(moved.folder_ / "fleet-1.plan"));
-  json& item = plan["mission"]["items"][6];
-  if (item["params"][6].is_number()) item["params"][6] = item["params"][6].get<double>() + 30.0;
+  constexpr int waypoint = 16;
+  json& items = plan["mission"]["items"];
+  const auto first =
+      std::ranges::find_if(items, [](const json& item) { return item.at("command") == waypoint; });
+  ASSERT_NE(first, items.end());
+  (*first)["params"][6] = first->at("params").at(6).get<double>() + 30.0;
   moved.folder_.write("fleet-1.plan", plan.dump());
   EXPECT_NE(check(moved.table()).exit_code, 0);
 }
