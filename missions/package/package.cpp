@@ -118,7 +118,7 @@ void plan_route(const evaluation::SimulationOptions& simulation, const session::
   ChoiceOptions choice = choice_options(simulation.sensor, run);
   std::optional<MeasuredSurface> measured;
   if (!scans_in_flight && !normals.empty()) {
-    measured.emplace(simulation, record.cloud, normals, record.seed, run.threads);
+    measured.emplace(simulation.survey.planner.spacing, record.cloud, normals, run.threads);
     choice.measured = &*measured;
     choice.keeps_reflight = options.views == flight::MissionViews::fastest;
   }

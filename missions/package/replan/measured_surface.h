@@ -1,35 +1,27 @@
 /// Surface that a survey measured, for predicting the coverage of flights without ground truth.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
-#include <stop_token>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "geometry/points/point_cloud.h"
-#include "missions/evaluation/simulation_options.h"
-#include "missions/session/view_in_flight.h"
 #include "sim/scene/scene.h"
 #include "survey/surfel/view_gain.h"
 
 namespace skycap::missions::package {
 
-/// Measured points as a surface for a simulated sensor: each point is a small square in the plane
-/// of its neighbours.
+/// Measured points as a surface that views see and that occludes itself: each point is a small
+/// square in the plane of its neighbours.
 class MeasuredSurface {
  public:
-  /// `normals` contains the unit normal of each point of the cloud, which must have points. `seed`
-  /// determines the errors of the simulated flight.
-  MeasuredSurface(const evaluation::SimulationOptions& options, const geometry::PointCloud& cloud,
-                  std::span<const Eigen::Vector3f> normals, std::uint64_t seed, unsigned threads);
-
-  /// Returns the fraction of the points that the views measure again from an empty cloud, within
-  /// the coverage distance and with the mission's spacing. After a stop request, the result is
-  /// incomplete.
-  double predicted_reflight(const std::vector<session::ViewInFlight>& views,
-                            const std::stop_token& stop = {}) const;
+  /// `normals` contains the unit normal of each point of the cloud, which must have points.
+  /// `spacing` is the point spacing of the mission [m].
+  MeasuredSurface(double spacing, const geometry::PointCloud& cloud,
+                  std::span<const Eigen::Vector3f> normals, unsigned threads);
 
   /// Returns at most `max_count` of the points with equal weights as targets of views.
   std::vector<survey::surfel::GainField::Target> targets(std::size_t max_count) const;
@@ -40,11 +32,9 @@ class MeasuredSurface {
                                      std::span<const Eigen::Vector3f> targets) const;
 
  private:
-  evaluation::SimulationOptions options_;
+  double spacing_;
   std::vector<Eigen::Vector3f> samples_, normals_;  ///< Sampled points and their normals.
   sim::Scene scene_;
-  std::uint64_t seed_;
-  unsigned threads_;
 };
 
 }  // namespace skycap::missions::package

@@ -35,7 +35,7 @@ constexpr double clearance_margin = 0.05;
 constexpr double equal_coverage = 5e-4;
 
 /// Tolerance for equal coverage in predicted re-flights.
-constexpr double equal_reflight = 5e-3;
+constexpr double equal_reflight = 3e-3;
 
 /// Additional coverage that the search aims at if re-flights are compared. The search selects the
 /// views whose coverage it overestimates.
@@ -45,8 +45,11 @@ constexpr double reflight_margin = 6e-3;
 /// it selects views for these points instead of the surface.
 constexpr std::size_t point_targets = 12'000;
 
-/// Fraction of the moves in a search that covers measured points.
-constexpr std::size_t point_moves = 3, all_moves = 17;
+/// Maximum number of measured points whose coverage is compared.
+constexpr std::size_t compared_points = 100'000;
+
+/// Factor by which a search that covers measured points has fewer moves, because they take longer.
+constexpr std::size_t point_cost_factor = 4;
 
 /// Penalty per view in fly-through capture [s]. Without it, tours would have so many views that
 /// moves of single views have no effect.
@@ -394,12 +397,17 @@ MissionChoice choose_mission(const flight::FlightOptions& flight,
   if (options.keeps_reflight) {
     points = surface.with_targets(options.measured->targets(point_targets));
   }
+  std::optional<GainField> all_points;
+  std::optional<MissionProblem> compared;
+  if (options.measured != nullptr) {
+    all_points = surface.with_targets(options.measured->targets(compared_points));
+    compared.emplace(flight, planner, options, *all_points, space, present);
+  }
   const MissionProblem asked(flight, planner, options, points ? *points : surface, space, present);
   const TourProblem& problem = asked.problem();
   const std::vector<View> views = asked.collect_views(present);
   const auto predicted_reflight = [&](const flight::Route& route) -> std::optional<double> {
-    if (options.measured == nullptr) return std::nullopt;
-    return options.measured->predicted_reflight(session::measured_views(flight, route), stop);
+    return compared ? std::optional(compared->predicted_coverage(route)) : std::nullopt;
   };
   MissionChoice choice;
   choice.survey = compute_figures(present, asked.predicted_coverage(present));
@@ -447,9 +455,7 @@ MissionChoice choose_mission(const flight::FlightOptions& flight,
   SearchSettings search = options.search;
   if (problem.leg_observations) search.moves_per_view /= leg_cost_factor;
   if (problem.bend_time) search.moves_per_view *= more_passed_views;
-  if (options.keeps_reflight) {
-    search.moves_per_view = search.moves_per_view * point_moves / all_moves;
-  }
+  if (options.keeps_reflight) search.moves_per_view /= point_cost_factor;
   const double margin = options.keeps_reflight ? reflight_margin : 0.0;
   try_tour(anneal(problem, spared.views, target_coverage + margin, search, stop));
 

@@ -35,8 +35,8 @@ struct MissionFigures {
   std::size_t segments = 0;  ///< Number of path segments; the vehicle stops after each.
   double predicted_coverage =
       0.0;  ///< Predicted covered fraction of the surface measured by the survey.
-  /// Fraction of the measured points that a predicted re-flight measures again, see
-  /// MeasuredSurface. Empty without such a surface.
+  /// Predicted fraction of the measured points (ChoiceOptions::measured) that a re-flight measures
+  /// again. Empty without such points.
   std::optional<double> predicted_reflight{};
 };
 
@@ -76,7 +76,7 @@ struct ChoiceOptions {
   /// Points of the survey, for the sight of views and for predicted re-flights. Null: neither.
   const MeasuredSurface* measured = nullptr;
   /// Rejects missions whose predicted re-flight covers less than that of the survey's views, by
-  /// more than half a percentage point. Requires `measured`.
+  /// more than 0.3 percentage points. Requires `measured`.
   bool keeps_reflight = false;
 };
 
