@@ -182,7 +182,7 @@ TEST(Export, RejectsAmslFormatsWithoutGeoidUndulation) {
   for (const FormatInfo& info : testing_support::not_empty(formats())) {
     FlightPlan plan = sample_plan(vehicle_for(info.format));
     plan.site.geoid_undulation.reset();
-    const bool needs_it = info.format == Format::plan || info.format == Format::kml;
+    const bool needs_it = std::string(info.heights).find("mean sea level") != std::string::npos;
     try {
       write(plan, info.format);
       EXPECT_FALSE(needs_it) << info.name;
@@ -203,13 +203,13 @@ TEST(Export, NotesElementsThatFormatCannotContain) {
 
 TEST(Export, RejectsUnknownFormatsAndFiles) {
   EXPECT_EQ(format_named("kmz"), Format::kmz);
-  EXPECT_THAT(testing_support::thrown_message([&] { format_named("gpx"); }),
-              testing::HasSubstr("unknown format \"gpx\""));
+  EXPECT_THAT(testing_support::thrown_message([&] { format_named("dwg"); }),
+              testing::HasSubstr("unknown format \"dwg\""));
   EXPECT_THAT(testing_support::thrown_message(
                   [&] { read_route("/nowhere/mission.plan", {}, Vector3d::Zero()); }),
               testing::HasSubstr("/nowhere/mission.plan: "));
-  EXPECT_THAT(testing_support::thrown_message([&] { detect_format("a.gpx", ""); }),
-              testing::HasSubstr("a.gpx is not a route file"));
+  EXPECT_THAT(testing_support::thrown_message([&] { detect_format("a.dwg", ""); }),
+              testing::HasSubstr("a.dwg is not a route file"));
   EXPECT_EQ(detect_format("a.csv", "latitude,longitude"), Format::litchi);
   EXPECT_EQ(detect_format("a.csv", "# frame: NED"), Format::csv);
 }
