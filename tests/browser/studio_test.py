@@ -529,10 +529,12 @@ class StudioTest(unittest.TestCase):
         studio.wait("#mission div[data-running=true]")  # the survey is followed again
         studio.click("nav button[data-step=run]")
         studio.wait(".job[data-running=true]")
-        studio.wait_for(lambda: "view" in studio.wait(".job pre").text)
+        # The 3-D view of the survey is another job.
+        studio.wait_for(lambda: "view" in "".join(
+            one.text for one in studio.browser.find_elements(By.CSS_SELECTOR, ".job pre")))
         studio.picture("8_run")
         studio.click(studio.button("Cancel"))
-        studio.wait(".job[data-running=false]")
+        studio.wait_for(lambda: not [job for job in studio.api("state")["jobs"] if job["running"]])
         self.assertTrue((self.folder / "results/mission").exists())
 
     def test_works_with_the_keyboard_alone(self):
