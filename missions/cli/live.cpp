@@ -1,7 +1,9 @@
 // Commands of live surveys: next, finish, serve and fly.
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
 #include <utility>
 
 #include <CLI/App.hpp>
@@ -417,7 +419,12 @@ int fly_live(const FlyOptions& options, const Console& console) {
     status.set_survey(*survey);
     show_survey(options, setup, *survey, console);
   };
-  flight.observer.is_held = [&] { return status.is_held(); };
+  flight.observer.is_held = [&] {
+    const bool is_held = status.is_held();
+    // The period of a flight, so that simulated time is not faster than reality during a hold.
+    if (is_held && is_simulated) std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    return is_held;
+  };
   flight.observer.track = [&](const geometry::View& view, std::optional<double> battery) {
     status.set_vehicle(view, battery);
   };
