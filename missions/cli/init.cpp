@@ -13,6 +13,8 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "flight/flight_options.h"
+#include "flight/motion/vehicle.h"
 #include "geometry/angle.h"
 #include "geometry/error.h"
 #include "geometry/io/file.h"
@@ -98,9 +100,10 @@ double max_accurate_range(const config::SensorDescription& sensor) {
 /// Returns the clearance [m]: vehicle radius, errors and a margin, rounded up to a multiple of 0.5
 /// m.
 double compute_default_clearance(const std::string& name) {
-  constexpr double margin = 0.5, unit = 0.5;
+  constexpr double min_margin = 0.5, unit = 0.5;
   const flight::FlightOptions usual;
   const flight::Vehicle vehicle = config::find_vehicle(name);
+  const double margin = std::max(min_margin, flight::stop_overshoot(vehicle));
   const double min =
       vehicle.radius + vehicle.position_error + usual.tracking_error + usual.map_error + margin;
   return unit * std::ceil(min / unit);

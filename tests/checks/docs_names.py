@@ -22,7 +22,7 @@ KEY = re.compile(r"[a-z_]+(?:\.[a-z_]+)+")
 IDENTIFIER = re.compile(r"(?:\w+::)*([a-z]+(?:_[a-z0-9]+)+)(?:\(\))?|(?:\w+::)+(\w+)")
 RECORDS = "docs/development/results/"
 GENERATED = re.compile(r"<!-- generated: .*?<!-- end of generated -->", re.DOTALL)
-FILE_TYPES = ("bin", "csv", "html", "journal", "json", "las", "laz", "pcd", "plan", "ply", "rawlog", "tum",
+FILE_TYPES = ("bin", "csv", "hold", "html", "journal", "json", "las", "laz", "pcd", "plan", "ply", "rawlog", "tum",
               "xyz")
 SCRIPTS = re.compile(r"skycap|docs/[^/]+\.py|docs/build_site|docs/pictures/\w+|tests/(checks|fuzz|faults)/\w+")
 PLACEHOLDER = re.compile(r"[A-Z]{2,}|\.\.\.|\bN\b")

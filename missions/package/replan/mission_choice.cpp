@@ -50,6 +50,8 @@ constexpr std::size_t compared_points = 100'000;
 
 /// Factor by which a search that covers measured points has fewer moves, because they take longer.
 constexpr std::size_t point_cost_factor = 4;
+/// Number of moves of such a search if it has few views.
+constexpr std::size_t moves_of_few_views = 6'000;
 
 /// Penalty per view in fly-through capture [s]. Without it, tours would have so many views that
 /// moves of single views have no effect.
@@ -455,7 +457,12 @@ MissionChoice choose_mission(const flight::FlightOptions& flight,
   SearchSettings search = options.search;
   if (problem.leg_observations) search.moves_per_view /= leg_cost_factor;
   if (problem.bend_time) search.moves_per_view *= more_passed_views;
-  if (options.keeps_reflight) search.moves_per_view /= point_cost_factor;
+  if (options.keeps_reflight) {
+    const std::size_t count = std::max<std::size_t>(1, spared.views.size());
+    search.moves_per_view =
+        std::clamp(moves_of_few_views / count, search.moves_per_view / point_cost_factor,
+                   search.moves_per_view);
+  }
   const double margin = options.keeps_reflight ? reflight_margin : 0.0;
   try_tour(anneal(problem, spared.views, target_coverage + margin, search, stop));
 
