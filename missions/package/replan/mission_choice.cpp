@@ -35,7 +35,7 @@ constexpr double clearance_margin = 0.05;
 constexpr double equal_coverage = 5e-4;
 
 /// Tolerance for equal coverage in predicted re-flights.
-constexpr double equal_reflight = 5e-3;
+constexpr double equal_reflight = 3e-3;
 
 /// Additional coverage that the search aims at if re-flights are compared. The search selects the
 /// views whose coverage it overestimates.

@@ -76,7 +76,7 @@ struct ChoiceOptions {
   /// Points of the survey, for the sight of views and for predicted re-flights. Null: neither.
   const MeasuredSurface* measured = nullptr;
   /// Rejects missions whose predicted re-flight covers less than that of the survey's views, by
-  /// more than half a percentage point. Requires `measured`.
+  /// more than 0.3 percentage points. Requires `measured`.
   bool keeps_reflight = false;
 };
 

@@ -132,7 +132,7 @@ TEST(MissionChoice, IsFastestMissionThatKeepsPredictedReflight) {
       survey.choose(options, [&](const CapturePlan& tour) { return survey.plan(tour); });
   ASSERT_TRUE(choice.survey.predicted_reflight && choice.replanned.predicted_reflight);
   const bool keeps =
-      *choice.replanned.predicted_reflight >= *choice.survey.predicted_reflight - 0.005;
+      *choice.replanned.predicted_reflight >= *choice.survey.predicted_reflight - 0.003;
   EXPECT_EQ(choice.is_replanned, keeps && choice.replanned.duration < choice.survey.duration)
       << choice.reason;
   EXPECT_EQ(flight::min_duration(choice.route),
