@@ -145,8 +145,9 @@ TEST(FlyCommand, ReportsAutopilotMessages) {
 TEST(FlyCommand, FliesWithSimulatedAutopilot) {
   const tests::TestFolder folder;
   const std::string mission = folder.write("m.yaml", flyable(tests::flight_mission()));
-  const tests::ProgramRun run = tests::run_skycap(
-      {"fly", mission, "--survey", folder / "survey", "--connect", "simulated", "--no-report"});
+  const tests::ProgramRun run =
+      tests::run_skycap({"fly", mission, "--survey", folder / "survey", "--connect", "simulated",
+                         "--no-report", "--set", "seed=3"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.err, AllOf(HasSubstr("taking off to "), HasSubstr("survey completed\n"),
                              HasSubstr("returning to the take-off point\n")));
