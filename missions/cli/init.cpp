@@ -13,8 +13,6 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-#include "flight/flight_options.h"
-#include "flight/motion/vehicle.h"
 #include "geometry/angle.h"
 #include "geometry/error.h"
 #include "geometry/io/file.h"
@@ -26,6 +24,7 @@
 #include "missions/evaluation/survey_scene.h"
 #include "missions/support/flow_text.h"
 #include "missions/wizard/photo_proposal.h"
+#include "missions/wizard/proposal.h"
 
 namespace skycap::missions::cli {
 namespace {
@@ -97,18 +96,6 @@ double max_accurate_range(const config::SensorDescription& sensor) {
   return sensor.useful_range ? sensor.useful_range->max : max_range(sensor);
 }
 
-/// Returns the clearance [m]: vehicle radius, errors and a margin, rounded up to a multiple of 0.5
-/// m.
-double compute_default_clearance(const std::string& name) {
-  constexpr double min_margin = 0.5, unit = 0.5;
-  const flight::FlightOptions usual;
-  const flight::Vehicle vehicle = config::find_vehicle(name);
-  const double margin = std::max(min_margin, flight::stop_overshoot(vehicle));
-  const double min =
-      vehicle.radius + vehicle.position_error + usual.tracking_error + usual.map_error + margin;
-  return unit * std::ceil(min / unit);
-}
-
 /// Returns the half width [m] of the column above the take-off point in a room. The vehicle climbs
 /// in it before the first scan.
 double column_half_width(const Proposal& proposal) { return proposal.clearance + 0.5; }
@@ -157,7 +144,7 @@ Proposal proposal_for(const InitOptions& options) {
   proposal.coverage_distance = rounded(side / (options.is_room() ? 300.0 : 200.0));
   proposal.view_distance = rounded(std::min(options.is_room() ? 0.3 * side : side, farthest));
   if (!options.has_vehicle()) return proposal;
-  proposal.clearance = compute_default_clearance(options.vehicle);
+  proposal.clearance = wizard::compute_min_clearance(config::find_vehicle(options.vehicle));
   if (!options.is_room()) {
     set_distances_of_flight(proposal, options);
   } else if (proposal.target.sizes().minCoeff() <= 2.0 * proposal.clearance ||
@@ -349,7 +336,7 @@ std::string photo_mission_text(const InitOptions& options) {
   std::string flight;
   if (options.has_vehicle()) {
     vehicle = config::find_vehicle(options.vehicle);
-    clearance = compute_default_clearance(options.vehicle);
+    clearance = wizard::compute_min_clearance(vehicle);
     const bool is_file = fs::path(options.vehicle).extension() == ".yaml";
     flight = fmt::format(
         "flight:\n"

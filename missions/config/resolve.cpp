@@ -185,9 +185,9 @@ void derive_pattern_order(MissionDocument& document) {
   }
 }
 
-/// Selects the survey's views if there is no choice: other planners have no surface model, an order
-/// belongs to its views, the time of a fleet is not that of one vehicle, and a flying scanner
-/// measures on the survey's own paths.
+/// Selects the survey's views for missions without a choice: other planners have no surface model,
+/// an order belongs to its views, the time of a fleet is not that of one vehicle, and a flying
+/// scanner measures on the survey's own paths.
 void derive_mission_views(MissionDocument& document) {
   flight::FlightOptions& flight = document.flight.options;
   if (flight.views != flight::MissionViews::fastest) return;

@@ -136,7 +136,7 @@ Json survey_progress(const fs::path& results, std::size_t from) {
 }
 
 /// Points in the preview of a survey that is being planned, in millimetres, from number `from` on.
-/// All points if the stride has changed, and none if there is no preview.
+/// All points if the stride has changed. Empty without a preview.
 Json survey_points(const fs::path& results, std::size_t from, std::size_t stride) {
   const std::vector<std::string> records = read_progress(results / simulation::preview_name);
   Json points = Json::array();

@@ -66,6 +66,14 @@ MissionValues with_fence(MissionValues values) {
 
 }  // namespace
 
+double compute_min_clearance(const flight::Vehicle& vehicle) {
+  constexpr double min_margin = 0.5, unit = 0.5;
+  const double margin = std::max(min_margin, flight::stop_overshoot(vehicle));
+  const flight::FlightOptions usual;
+  const double errors = vehicle.position_error + usual.tracking_error + usual.map_error;
+  return rounded_up(vehicle.radius + errors + margin, unit);
+}
+
 MissionValues values_for(MissionValues values, const AlignedBox3d& target, double uncertainty,
                          bool has_terrain) {
   values.unknown = unknown_box(target, uncertainty, has_terrain);
@@ -89,16 +97,6 @@ namespace {
 /// The sensor that is asked for, or the vehicle's own camera.
 std::string make_sensor(const SiteRequest& request) {
   return request.sensor.empty() ? config::find_vehicle_camera(request.vehicle) : request.sensor;
-}
-
-/// The clearance that is proposed at least, or what the vehicle's size and errors take, with half a
-/// metre to spare, to the next half metre.
-double clearance_for(const flight::Vehicle& vehicle) {
-  constexpr double min_margin = 0.5, unit = 0.5;
-  const double margin = std::max(min_margin, flight::stop_overshoot(vehicle));
-  const flight::FlightOptions usual;
-  const double errors = vehicle.position_error + usual.tracking_error + usual.map_error;
-  return std::max(proposed_clearance, rounded_up(vehicle.radius + errors + margin, unit));
 }
 
 /// The values with a sensor, and the distance that it measures well from.
@@ -157,7 +155,7 @@ std::string propose_mission(const SiteRequest& request, const std::filesystem::p
                                      .unknown = {}},
                                     target.box, target.uncertainty, request.terrain.has_value());
   const flight::Vehicle vehicle = config::find_vehicle(request.vehicle);
-  values.clearance = clearance_for(vehicle);
+  values.clearance = std::max(proposed_clearance, compute_min_clearance(vehicle));
   if (request.gsd) {
     values = with_photos(std::move(values), request, vehicle, target);
   } else {

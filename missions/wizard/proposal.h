@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "flight/motion/vehicle.h"
 #include "missions/wizard/mission_text.h"
 #include "missions/wizard/site_request.h"
 
@@ -18,8 +19,12 @@ namespace skycap::missions::wizard {
 /// possible within 100 m of the target. Throws the errors of config::parse_mission().
 std::string propose_mission(const SiteRequest& request, const std::filesystem::path& file);
 
-/// Clearance of a proposed mission [m].
+/// Minimum clearance of the mission of a site [m].
 inline constexpr double proposed_clearance = 2.0;
+
+/// Returns the clearance that a vehicle requires [m], rounded up to a multiple of 0.5 m: its
+/// radius, the errors, and a margin of at least 0.5 m that covers its overshoot at stops.
+double compute_min_clearance(const flight::Vehicle& vehicle);
 
 /// Derives values from a target's box and the `uncertainty` of its position [m]: unknown box,
 /// coverage distance, view distance and geofence. Without terrain, the ground is at z = 0. With

@@ -31,10 +31,9 @@ bool may_return(FailureKind kind) {
 }  // namespace
 
 std::future<void> run_at_once(const std::function<void()>& work) {
-  work();
-  std::promise<void> done;
-  done.set_value();
-  return done.get_future();
+  std::packaged_task<void()> task(work);
+  task();
+  return task.get_future();
 }
 
 LiveFlight::LiveFlight(LiveSurvey& survey, GuidedFlight& vehicle, const flight::Motion& motion,
