@@ -8,10 +8,10 @@
 
 namespace skycap::flight {
 
-/// Adds a vertical piece in flight direction. Up to `vouched` [m] above its foot it counts as above
-/// the pad, where the pilot must check it. The rest is an ordinary leg. `items` are the names of
-/// both ends.
+/// Adds a vertical piece in flight direction. Up to `checked_height` [m] above its foot it counts
+/// as above the pad, where the pilot must check it. The rest is an ordinary leg. `items` are the
+/// names of both ends.
 void append_column(InterpretedRoute& route, const Segment& column,
-                   const std::array<std::string, 2>& items, double vouched);
+                   const std::array<std::string, 2>& items, double checked_height);
 
 }  // namespace skycap::flight

@@ -97,9 +97,9 @@ FlightScript return_script(const RtlProfile& rtl_profile, const Motion& motion,
     append(scripted_leg(motion, middle, path[i]), false);
   }
   if (autopilot == AutopilotType::ardupilot) script.back().wait += ardupilot_hold;
-  const double vouched = std::min(over.z(), seam);
-  if (over.z() > vouched) append(landing_leg(motion, over, vouched, foot), false);
-  append(landing_leg(motion, at_height(over, vouched), foot, foot), true);
+  const double checked_top = std::min(over.z(), seam);
+  if (over.z() > checked_top) append(landing_leg(motion, over, checked_top, foot), false);
+  append(landing_leg(motion, at_height(over, checked_top), foot, foot), true);
   return script;
 }
 

@@ -51,7 +51,7 @@ FlightEnd fly_survey(const flight::FlightOptions& flight, LiveSurvey& survey,
   const Eigen::Vector3d pad = survey.flight()->pad();
   const flight::Motion motion(flight.required_vehicle(), flight.route(pad).conditions);
   const GuidedLimits limits = make_limits(flight);
-  options.vouched = flight.clearance + ground_margin;
+  options.checked_height = flight.clearance + ground_margin;
   flight::mavlink::AutopilotLink link(port);
   const flight::GeodeticPoint& origin = flight.site.origin;
   if (MaybeFailure failure =

@@ -66,8 +66,8 @@ MaybeFailure LiveFlight::begin() {
   const Vector3d spot = vehicle_.view().position;
   here_ = {spot.x(), spot.y(), above_pad_.z()};
   // The vehicle may stand off the centre of the pad and climbs vertically from its position.
-  const double vouched = std::min(pad_.z() + options_.vouched, above_pad_.z());
-  const auto climb = survey_.flight()->find_path({spot.x(), spot.y(), vouched}, here_);
+  const double checked_top = std::min(pad_.z() + options_.checked_height, above_pad_.z());
+  const auto climb = survey_.flight()->find_path({spot.x(), spot.y(), checked_top}, here_);
   const auto over = survey_.flight()->find_path(here_, above_pad_);
   if (!climb || climb->points.size() > 2 || !over) {
     return FlightFailure{FailureKind::rejected,

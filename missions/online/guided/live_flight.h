@@ -36,7 +36,7 @@ struct FlightOptions {
   double sensing_limit = 60.0;   ///< Maximum duration of a scan [s].
   double planning_limit = 60.0;  ///< Maximum duration of planning the next path [s].
   /// Height of the first part of the climb, which is assumed free (the pilot must check) [m].
-  double vouched = 2.5;
+  double checked_height = 2.5;
   /// Receives progress messages.
   std::function<void(const std::string&)> note = [](const std::string&) {};
   std::function<void()> show = [] {};  ///< Called after each scan, in the background.
