@@ -190,7 +190,8 @@ void add_export(CLI::App& app, const Console& console, Action& action) {
   command
       ->add_option("--simplify", options->simplify,
                    "Maximum distance in metres of the route's positions from the simplified route "
-                   "(default: 0.5 for tracks and logs; waypoints are not simplified)")
+                   "(default for tracks and logs: 0.5, or less if required by the clearance; "
+                   "waypoints are not simplified)")
       ->check(number_between(0.01, 100.0));
   command->add_flag("--repair", options->repairs,
                     "Lead legs that are not free round the obstacles, and skip waypoints that are "

@@ -35,6 +35,10 @@ namespace {
 
 using Eigen::Vector3d;
 
+/// Tolerances of the simplification [m] for tracks that the default tolerance leads too close to
+/// an obstacle.
+constexpr std::array finer_tolerances{0.2, 0.1, 0.05};
+
 /// Site of a route: the flight options of a mission and the space in which its routes are verified.
 class RouteSite {
  public:
@@ -199,11 +203,25 @@ int export_route(const ExportOptions& options, const Console& console) {
   const package::ImportOptions import = import_options(options);
   package::ImportedFlight flight;
   const package::ImportSpace space = site.space(pad);
-  try {
-    flight = package::simplify_import(std::move(route), flight_options, pad, import);
+  const auto verify = [&](const package::ImportOptions& settings) {
+    package::ImportedFlight attempt =
+        package::simplify_import(route, flight_options, pad, settings);
     progress.show(site.name() + ": verifying " +
-                  support::counted(flight.route.points.size(), "waypoint"));
-    package::plan_import(flight, flight_options, space, pad, import, console.stop);
+                  support::counted(attempt.route.points.size(), "waypoint"));
+    package::plan_import(attempt, flight_options, space, pad, settings, console.stop);
+    return attempt;
+  };
+  try {
+    flight = verify(import);
+    if (route.is_track && !import.tolerance) {
+      for (const double tolerance : finer_tolerances) {
+        if (flight.problems.empty()) break;
+        package::ImportOptions finer = import;
+        finer.tolerance = tolerance;
+        package::ImportedFlight attempt = verify(finer);
+        if (attempt.problems.empty()) flight = std::move(attempt);
+      }
+    }
   } catch (const Error& error) {
     throw Error(error.kind(), file + ": " + error.what());
   }

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "flight/clearance/interruptible_space.h"
+#include "flight/export/export.h"
 #include "flight/flown/track_simplification.h"
 #include "geometry/angle.h"
 #include "geometry/error.h"
@@ -146,16 +147,24 @@ void plan_import(ImportedFlight& flight, const flight::FlightOptions& given,
   const flight::JointSpace joint_over_pad({over_pad, &known_over_pad});
   const flight::InterruptibleSpace interruptible(joint, stop);
 
-  if (!import.repairs) {
-    verify_straight(flight, interruptible, options.budget().total(), stop);
-    if (!flight.problems.empty()) return;
+  // The positions of files are rounded. The verification of files allows for it, too.
+  flight::RouteOptions route = options.route(pad);
+  const flight::ClearanceBudget required = route.clearance;
+  route.clearance.margin = std::max(0.0, required.margin - flight::rounding_bound);
+  verify_straight(flight, interruptible, route.clearance.total(), stop);
+  if (!flight.problems.empty()) {
+    if (!import.repairs) return;
+    flight.problems.clear();
+    flight.unverified_legs = 0;
+    route.clearance = required;
   }
   SurveyMission mission;
   mission.image_motion = options.image_motion_bounds();
-  flight::RouteOptions route = options.route(pad);
   route.landing_surfaces = options.landing_surfaces(pad, space.landing_surfaces);
   mission.route = plan_route(import_capture_points(flight.route, options, import.captures),
                              options.required_vehicle(), interruptible, &joint_over_pad, route);
+  mission.route.options.clearance = required;
+  mission.route.clearance = required.total();
   flight.mission = std::move(mission);
   for (const flight::Unreached& missed : flight.mission->route.unreached) {
     const std::string text =

@@ -77,7 +77,9 @@ std::vector<flight::CapturePoint> import_capture_points(const flight::ImportedRo
                                                         ImportedCaptures captures);
 
 /// Verifies the legs and plans the flight through the waypoints in their order, with take-off,
-/// returns, energy and sorties. Throws the errors of flight::plan_route().
+/// returns, energy and sorties. Positions are rounded in files: without repaired legs, the route
+/// may be flight::rounding_bound closer than the clearance. Throws the errors of
+/// flight::plan_route().
 void plan_import(ImportedFlight& flight, const flight::FlightOptions& options,
                  const ImportSpace& space, const Eigen::Vector3d& pad, const ImportOptions& import,
                  const std::stop_token& stop);

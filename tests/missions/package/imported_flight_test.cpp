@@ -202,6 +202,24 @@ TEST_F(OwnRouteTest, ReadsItsOwnFilesAgain) {
   }
 }
 
+/// The views of a survey are often at the required clearance, to which files round.
+TEST(OwnRoute, VerifiesTheFilesOfAPlanInTheMeasuredSpace) {
+  const tests::TestFolder folder;
+  const std::string mission = folder.write("m.yaml", tests::flight_mission());
+  for (const std::string seed : {"1", "3"}) {
+    const std::string plan = folder / seed;
+    ASSERT_EQ(tests::run_skycap({"plan", mission, "--seed", seed, "--out", plan, "--no-report"})
+                  .exit_code,
+              0);
+    for (const char* file :
+         {"mission.plan", "mission.waypoints", "mission.kml", "mission.geojson", "mission.csv"}) {
+      const tests::ProgramRun run = tests::run_skycap(
+          {"export", plan, "--route", plan + "/" + file, "--out", folder / "again"});
+      EXPECT_EQ(run.exit_code, 0) << "seed " << seed << ", " << file << ": " << run.out << run.err;
+    }
+  }
+}
+
 TEST_F(OwnRouteTest, StatesTheMinimumClearanceInTheProfile) {
   const tests::ProgramRun run = export_route(table(square));
   ASSERT_EQ(run.exit_code, 0) << run.out << run.err;
