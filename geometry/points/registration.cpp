@@ -17,6 +17,7 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 /// Patch in its current position, with its partner.
 struct Match {
+  const SurfacePatch* patch;
   Vector3d point, normal;
   double error;      // n . (p - q)
   double deviation;  // deviation of the partner
@@ -36,7 +37,7 @@ std::vector<Match> find_matches(std::span<const SurfacePatch> patches, const Iso
     const double error = there->normal.dot(shift);
     // Planes are valid only up to the border of the measured surface.
     if ((shift - error * there->normal).norm() > map.radius()) continue;
-    matches.push_back({moved.mean, there->normal, error, there->deviation,
+    matches.push_back({&patch, moved.mean, there->normal, error, there->deviation,
                        patch.deviation * patch.deviation + there->deviation * there->deviation});
   }
   return matches;
@@ -184,11 +185,11 @@ Alignment aligned(std::span<const SurfacePatch> patches, SurfaceMap& map,
   return found;
 }
 
-/// Returns the misfit of an alignment in [0, 1]. Patches without a partner, or with an error of at
-/// least a quarter of the radius, count as 1.
-double compute_misfit(const Alignment& alignment, std::size_t patches, double radius) {
-  double sum = static_cast<double>(patches - alignment.matches.size());
-  for (const Match& match : alignment.matches) {
+/// Returns the misfit of matches in [0, 1]. Patches without a partner, or with an error of at least
+/// a quarter of the radius, count as 1.
+double compute_misfit(const std::vector<Match>& matches, std::size_t patches, double radius) {
+  double sum = static_cast<double>(patches - matches.size());
+  for (const Match& match : matches) {
     const double share = std::min(1.0, std::abs(match.error) / (0.25 * radius));
     sum += share * share;
   }
@@ -209,13 +210,18 @@ Registration register_scan(std::span<const SurfacePatch> patches, SurfaceMap& ma
   constexpr double narrow = 1.0 / 16.0, wide = 1.0 / 4.0, clearly = 0.8;
   Alignment best = aligned(patches, map, given, reach, min_matches, narrow);
   Alignment other = aligned(patches, map, given, reach, min_matches, wide);
-  if (compute_misfit(other, patches.size(), map.radius()) <
-      clearly * compute_misfit(best, patches.size(), map.radius())) {
+  if (compute_misfit(other.matches, patches.size(), map.radius()) <
+      clearly * compute_misfit(best.matches, patches.size(), map.radius())) {
     best = std::move(other);
   }
   found.matches = best.matches.size();
   if (found.matches < min_matches) return found;
   found.correction = best.correction;
+  std::vector<SurfacePatch> matched;
+  for (const Match& match : given) matched.push_back(*match.patch);
+  found.first_misfit = compute_misfit(given, given.size(), map.radius());
+  found.misfit = compute_misfit(find_matches(matched, found.correction, map, reach), given.size(),
+                                map.radius());
   const Frame frame = make_frame(best.matches);
   found.size = frame.size;
   found.middle = found.correction.inverse() * frame.middle;

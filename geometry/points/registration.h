@@ -44,6 +44,10 @@ struct Registration {
   double first_error = 0.0;           ///< median |n . (p - q)| before the correction [m]
   double error = 0.0;                 ///< median |n . (p - q)| after the correction [m]
   double deviation = 0.0;             ///< median deviation of the partners [m]
+  /// Misfit before and after the correction, of the patches with a partner before it: mean of the
+  /// squares of |n . (p - q)| in quarters of the map's radius. Larger errors and patches without a
+  /// partner count as 1.
+  double first_misfit = 0.0, misfit = 0.0;
   Eigen::Vector3d middle =
       Eigen::Vector3d::Zero();  ///< m: centre of the patches before the correction [m]
   double size = 0.0;            ///< L: root mean square distance of the patches from m [m]

@@ -125,8 +125,12 @@ PoseFinding PoseCheck::find(const geometry::ScanSpan& scan, const PoseCovariance
       static_cast<int>(std::ranges::count_if(found.directions, [](const RigidDirection& direction) {
         return !direction.is_observable();
       }));
-  finding.is_wrong = finding.is_wrong || !is_explained(found, sensor, covariance, map.radius());
-  if (registers_ && !finding.is_wrong &&
+  // If the surface hardly constrains a motion, new surface can be matched with other surface that
+  // pulls the scan along. The surface that fits at the given pose then fits less.
+  const bool is_within_errors = is_explained(found, sensor, covariance, map.radius());
+  const bool is_improved = found.misfit < found.first_misfit;
+  finding.is_wrong = finding.is_wrong || (is_improved && !is_within_errors);
+  if (registers_ && is_within_errors && !finding.is_wrong &&
       is_allowed(found.correction, sensor, covariance, map.radius())) {
     finding.correction = found.correction;
   }
