@@ -2,10 +2,10 @@
 ///
 /// Two tests detect a wrong pose. First, where the scan and the kept cloud show the same surface,
 /// registration (geometry/points/registration.h) gives the motion between them. The pose is wrong
-/// if the pose's standard deviation and the errors of both surfaces do not explain this motion, and
-/// if the surface that both show at the given pose fits better after it.
-/// Second, the scan must not see through a large fraction of the earlier measurements, nor earlier
-/// scans through its points. The second test detects errors that are too large for the surfaces to
+/// if its standard deviation and the errors of both surfaces do not explain this motion. In
+/// addition, the surface that both show at the given pose must fit better after the motion. Second,
+/// the scan must not see through a large fraction of the earlier measurements, nor earlier scans
+/// through its points. The second test detects errors that are too large for the surfaces to
 /// overlap.
 #pragma once
 
