@@ -112,11 +112,18 @@ ImportedRoute read_track_file(const std::filesystem::path& file, const FlightFac
 }
 
 constexpr std::string_view local_header = "x,y,z,heading_deg,gimbal_pitch_deg,photos";
+constexpr std::string_view fleet_header = "x,y,z,heading_deg,gimbal_pitch_deg,photos,vehicle";
+
+/// Returns true for integers from `min` to 100.
+bool is_small_count(double value, double min) {
+  return value >= min && value <= 100.0 && value == std::floor(value);
+}
 
 /// Reads a waypoint table whose positions are in the mission's frame.
 ImportedRoute read_local_table(std::string_view text) {
   ImportedRoute route{.kind = "waypoint table", .heights = "mission frame"};
-  next_line(text);  // the header
+  const std::string_view header = geometry::trimmed(next_line(text));
+  const bool is_fleet = header == fleet_header;
   for (std::size_t line = 2; !text.empty(); ++line) {
     const std::string_view row = geometry::trimmed(next_line(text));
     if (row.empty()) continue;
@@ -125,18 +132,19 @@ ImportedRoute read_local_table(std::string_view text) {
     for (const std::string& field : split(row, ',')) {
       values.push_back(to_number(geometry::trimmed(field)).value_or(unspecified));
     }
-    const bool has_numbers = values.size() == 6 &&
+    const bool has_numbers = values.size() == (is_fleet ? 7U : 6U) &&
                              std::ranges::all_of(values, [](double v) { return std::isfinite(v); });
     if (!has_numbers || std::abs(values[3]) > 360.0 || std::abs(values[4]) > 180.0 ||
-        values[5] < 0.0 || values[5] > 100.0 || values[5] != std::floor(values[5])) {
-      throw Error(ErrorKind::bad_file, item + " must contain the numbers " +
-                                           std::string(local_header) +
-                                           " with angles up to 360 and up to 100 photos");
+        !is_small_count(values[5], 0.0) || (is_fleet && !is_small_count(values[6], 1.0))) {
+      throw Error(ErrorKind::bad_file, item + " must contain the numbers " + std::string(header) +
+                                           " with angles up to 360 and up to 100 photos" +
+                                           (is_fleet ? " and vehicles from 1 to 100" : ""));
     }
     const Vector3d position(values[0], values[1], values[2]);
     geometry::require_valid_position(position, item);
     route.points.push_back({position, static_cast<double>(route.points.size()), values[3],
-                            values[4], 0.0, static_cast<int>(values[5]), item});
+                            values[4], 0.0, static_cast<int>(values[5]), item,
+                            is_fleet ? static_cast<std::size_t>(values[6]) : 0});
   }
   return route;
 }
@@ -152,7 +160,8 @@ ImportedRoute read(const std::filesystem::path& file, const FlightFacts& facts,
       require_georeference(is_georeferenced);
       return read_route_file(file, facts);
     }
-    if (geometry::trimmed(first) == local_header) return read_local_table(text);
+    const std::string_view header = geometry::trimmed(first);
+    if (header == local_header || header == fleet_header) return read_local_table(text);
     const bool is_trajectory = text.starts_with("# frame");
     if (!is_trajectory && !PositionTable(text)[Column::time]) {
       require_georeference(is_georeferenced);

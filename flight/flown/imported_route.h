@@ -1,6 +1,7 @@
 /// Route from another program or from a flight, in the frame of a mission.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -23,6 +24,7 @@ struct ImportedPoint {
   double hold = 0.0;               ///< Rest time [s].
   int captures = 0;                ///< Number of photos or scans.
   std::string item;                ///< Name in the file, such as "line 12".
+  std::size_t vehicle = 0;         ///< Number of the vehicle of a fleet, from 1. 0: unspecified.
 };
 
 struct ImportedRoute {
@@ -40,7 +42,7 @@ struct ImportedRoute {
 ///
 /// - .csv: waypoint table with the columns latitude, longitude and a height; with a column of times
 ///   it is a track, see read_flown_log(). Or one with the columns x, y, z [m, mission frame],
-///   heading_deg, gimbal_pitch_deg and photos
+///   heading_deg, gimbal_pitch_deg and photos; for fleets, with a column vehicle
 /// - .kml: LineString or gx:Track
 /// - .plan, .waypoints, .kmz, .litchi.csv, .geojson: route files, see interpret_file()
 /// - logs and tracks of read_flown_log()

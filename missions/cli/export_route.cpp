@@ -14,11 +14,15 @@
 #include "geometry/error.h"
 #include "geometry/io/output_folder.h"
 #include "missions/cli/commands.h"
+#include "missions/cli/write_page.h"
 #include "missions/config/mission_document.h"
 #include "missions/config/resolve.h"
 #include "missions/evaluation/survey_scene.h"
+#include "missions/inspection/flight_file.h"
 #include "missions/inspection/inspection_flight.h"
+#include "missions/inspection/inspection_mission.h"
 #include "missions/inspection/inspection_package.h"
+#include "missions/inspection/inspection_results.h"
 #include "missions/inspection/inspection_site.h"
 #include "missions/package/flight_report.h"
 #include "missions/package/imported_flight.h"
@@ -52,15 +56,17 @@ class RouteSite {
       throw Error(ErrorKind::bad_usage,
                   options.package.string() + ": --route requires a vehicle; set flight.vehicle");
     }
-    if (flight_.is_fleet()) {
-      throw Error(ErrorKind::bad_usage, options.package.string() +
-                                            ": --route requires a single vehicle; remove "
-                                            "flight.vehicles and set flight.vehicle");
+    if (flight_.is_fleet() && !measured_) {
+      throw Error(ErrorKind::bad_usage,
+                  options.package.string() +
+                      ": --route with flight.vehicles requires the results folder of plan; plan "
+                      "the mission, or set flight.vehicle instead");
     }
   }
 
   const std::string& name() const { return name_; }
   const flight::FlightOptions& flight() const { return flight_; }
+  unsigned threads() const { return threads_; }
 
   /// Returns the take-off point, or std::nullopt if the mission does not set one.
   std::optional<Vector3d> pad() const { return pad_ ? pad_ : flight_.takeoff; }
@@ -87,6 +93,7 @@ class RouteSite {
     package::PackagedSurvey survey = package::read_package(options.package, options.overrides);
     name_ = std::move(survey.name);
     flight_ = std::move(survey.flight);
+    threads_ = survey.run.threads;
     pad_ = survey.pad;
     landing_surfaces_ = std::move(survey.landing_surfaces);
     measured_ = std::make_unique<const flight::MeasuredSpace>(std::move(survey.measured));
@@ -117,6 +124,7 @@ class RouteSite {
 
   std::string name_;
   flight::FlightOptions flight_;
+  unsigned threads_ = 0;
   std::optional<Vector3d> pad_;
   std::unique_ptr<const config::MissionSetup> setup_;
   std::vector<flight::LandingSurface> landing_surfaces_;
@@ -177,6 +185,71 @@ int reject(const package::ImportedFlight& flight, const std::string& file, doubl
   return 1;
 }
 
+/// Returns the name of a leg of a corner file, whose first corner is in line 2.
+std::string corner_leg(std::size_t leg) {
+  return fmt::format("leg {} (line {} to line {})", leg + 1, leg + 2, leg + 3);
+}
+
+/// Verifies the flight along the corners of a file and writes the results of the inspection with
+/// it.
+int export_corners(const ExportOptions& options, const Console& console) {
+  const std::string file = options.route->string();
+  if (options.simplify || options.repairs || options.heights != "auto" ||
+      options.captures != "file" || !options.formats.empty()) {
+    throw Error(ErrorKind::bad_usage,
+                "--simplify, --repair, --heights, --captures and --format conflict with " + file +
+                    ", which contains the corners of an inspection flight; remove them");
+  }
+  std::optional<inspection::InspectionPackage> package;
+  if (std::filesystem::is_directory(options.package)) {
+    package = inspection::read_inspection(options.package, options.overrides);
+  }
+  if (!package) {
+    throw Error(ErrorKind::bad_usage, file + " contains the corners of an inspection flight, and " +
+                                          options.package.string() +
+                                          " is not the results folder of an inspection");
+  }
+  const config::MissionSetup& setup = package->setup;
+  ProgressLine progress(console, false);
+  const auto report = [&](const std::string& what) { progress.show(setup.name + ": " + what); };
+  report("verifying the flight");
+  inspection::EditedInspection edited;
+  try {
+    edited = inspection::plan_edited_inspection(*package, inspection::read_corners_csv(file),
+                                                console.stop, report);
+  } catch (const Error& error) {
+    const std::string what = error.what();
+    throw Error(error.kind(), what.starts_with(file) ? what : file + ": " + what);
+  }
+  if (!edited.problems.empty()) {
+    progress.clear();
+    for (const survey::inspection::LegProblem& problem : edited.problems) {
+      console.out << file << ": " << corner_leg(problem.leg) << ": " << problem.what << "\n";
+    }
+    console.out << file << ": not verified, " << support::counted(edited.problems.size(), "problem")
+                << "; move the corners; no file written\n"
+                << std::flush;
+    return 1;
+  }
+  geometry::OutputFolder folder(*options.out);
+  report("writing " + folder.path().string());
+  inspection::stage_inspection_mission(setup, *package->space, edited.mission, folder);
+  write_page(package::summary_name, true, folder, console);
+  folder.commit();
+  progress.clear();
+  console.out << setup.name << ": verified\n"
+              << fmt::format("  route     {}: {}\n", file,
+                             support::counted(edited.mission.plan.vertices.size(), "corner"));
+  if (edited.slowed_legs > 0) {
+    console.out << fmt::format("  slowed    {}, {:.1f} s in total, to keep the motion limits\n",
+                               support::counted(edited.slowed_legs, "leg"), edited.added_delay);
+  }
+  console.out << inspection::plan_text(setup, edited.mission) << "  results   "
+              << folder.path().string() << "\n"
+              << inspection::warnings_text(setup, edited.mission) << std::flush;
+  return 0;
+}
+
 }  // namespace
 
 int export_route(const ExportOptions& options, const Console& console) {
@@ -185,6 +258,7 @@ int export_route(const ExportOptions& options, const Console& console) {
                                           options.package.string() + " belong to another flight");
   }
   if (options.lost) throw Error(ErrorKind::bad_usage, "--lost conflicts with --route");
+  if (inspection::is_corner_file(*options.route)) return export_corners(options, console);
   const std::string file = options.route->string();
   std::vector<flight::Format> formats;
   for (const std::string& name : options.formats) formats.push_back(flight::format_named(name));
@@ -208,7 +282,12 @@ int export_route(const ExportOptions& options, const Console& console) {
         package::simplify_import(route, flight_options, pad, settings);
     progress.show(site.name() + ": verifying " +
                   support::counted(attempt.route.points.size(), "waypoint"));
-    package::plan_import(attempt, flight_options, space, pad, settings, console.stop);
+    if (flight_options.is_fleet()) {
+      package::plan_fleet_import(attempt, flight_options, space, pad, settings, site.threads(),
+                                 console.stop);
+    } else {
+      package::plan_import(attempt, flight_options, space, pad, settings, console.stop);
+    }
     return attempt;
   };
   try {
@@ -231,23 +310,29 @@ int export_route(const ExportOptions& options, const Console& console) {
   }
 
   geometry::OutputFolder folder(*options.out);
-  if (formats.empty()) {
-    const auto own = package::package_formats(flight_options.required_vehicle());
-    formats.assign(own.begin(), own.end());
-  }
   progress.show(site.name() + ": writing " + folder.path().string());
   package::SurveyMission& mission = *flight.mission;
-  mission.files = package::stage_flight(site.name(), flight_options, mission.route, *space.space,
-                                        formats, folder);
-  package::stage_profile(flight_options, mission.route, *space.space, folder, console.stop);
+  if (flight.fleet) {
+    package::stage_fleet(site.name(), *flight.fleet, *space.space, formats, folder);
+    mission.fleet = flight.fleet;
+  } else {
+    if (formats.empty()) {
+      const auto own = package::package_formats(flight_options.required_vehicle());
+      formats.assign(own.begin(), own.end());
+    }
+    mission.files = package::stage_flight(site.name(), flight_options, mission.route, *space.space,
+                                          formats, folder);
+    package::stage_profile(flight_options, mission.route, *space.space, folder, console.stop);
+  }
   folder.replace([](std::string_view name) {
     return package::is_flight_file(name) || name == package::profile_name;
   });
   folder.commit();
   progress.clear();
   console.out << site.name() << ": verified\n"
-              << package::import_text(flight, file, flight_options) << package::flight_text(mission)
-              << "  results   " << folder.path().string() << "\n"
+              << package::import_text(flight, file, flight_options)
+              << (flight.fleet ? "" : package::flight_text(mission)) << "  results   "
+              << folder.path().string() << "\n"
               << package::pilot_text(flight_options, mission) << std::flush;
   return 0;
 }

@@ -3,17 +3,26 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <numbers>
 #include <string_view>
 
 #include <fmt/format.h>
 
+#include "geometry/angle.h"
 #include "geometry/error.h"
 #include "geometry/io/file.h"
+#include "geometry/pose/world.h"
+#include "geometry/text_parts.h"
 
 namespace skycap::missions::inspection {
 namespace {
 
+using geometry::degrees_per_radian;
+using geometry::radians_per_degree;
 using survey::inspection::FlightSample;
+using survey::inspection::Vertex;
+constexpr const char* corner_header = "x,y,z,heading_deg,gimbal_pitch_deg,delay_s";
+constexpr std::size_t largest_corner_file = std::size_t{64} << 20;  // [byte]
 constexpr std::size_t columns = 6;
 
 /// Returns the fields of a line.
@@ -84,6 +93,60 @@ std::vector<FlightSample> read_flight_csv(const std::filesystem::path& file) {
   }
   if (flight.empty()) reject(file, 1, "contains no samples of a flight: t, x, y, z, yaw, pitch");
   return flight;
+}
+
+std::string write_corners_csv(std::span<const Vertex> corners) {
+  std::string text = corner_header;
+  for (const Vertex& corner : corners) {
+    const double heading = std::remainder(90.0 - degrees_per_radian * corner.yaw, 360.0);
+    text += fmt::format("\n{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f}", corner.position.x(),
+                        corner.position.y(), corner.position.z(),
+                        heading < 0.0 ? heading + 360.0 : heading,
+                        degrees_per_radian * corner.pitch, corner.delay);
+  }
+  return text + "\n";
+}
+
+bool is_corner_file(const std::filesystem::path& file) {
+  if (geometry::lower_extension(file) != ".csv") return false;
+  const std::string text = geometry::read_file(file, largest_corner_file);
+  const std::string_view content = geometry::without_mark(text);
+  return geometry::trimmed(content.substr(0, content.find('\n'))) == corner_header;
+}
+
+std::vector<Vertex> read_corners_csv(const std::filesystem::path& file) {
+  const std::string text = geometry::read_file(file, largest_corner_file);
+  std::vector<Vertex> corners;
+  std::size_t number = 0;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    const std::string_view line(text.data() + at, end - at);
+    at = end + 1;
+    ++number;
+    const std::vector<std::string_view> fields = fields_of(line);
+    if (number == 1 || fields.empty()) continue;
+    std::array<double, columns> values{};
+    bool is_valid = fields.size() == columns;
+    for (std::size_t i = 0; i < columns && is_valid; ++i) is_valid = parse(fields[i], values[i]);
+    constexpr double max_delay = 86400.0;
+    if (!is_valid || std::abs(values[3]) > 360.0 || std::abs(values[4]) > 90.0 || values[5] < 0.0 ||
+        values[5] > max_delay) {
+      reject(file, number,
+             fmt::format("expected the numbers {} with headings up to 360, pitches up to 90 and "
+                         "delays from 0 to 86400",
+                         corner_header));
+    }
+    Vertex corner;
+    corner.position = {values[0], values[1], values[2]};
+    geometry::require_valid_position(corner.position,
+                                     fmt::format("{}:{}: the corner", file.string(), number));
+    corner.yaw = std::remainder(radians_per_degree * (90.0 - values[3]), 2.0 * std::numbers::pi);
+    corner.pitch = radians_per_degree * values[4];
+    corner.delay = values[5];
+    corners.push_back(corner);
+  }
+  if (corners.empty()) reject(file, 1, "contains no corner");
+  return corners;
 }
 
 }  // namespace skycap::missions::inspection

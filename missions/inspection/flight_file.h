@@ -1,4 +1,5 @@
-/// Sampled flights as text: position, yaw and pitch of the camera at equal intervals of time.
+/// Flights as text: samples of position, yaw and pitch of the camera at equal intervals of time,
+/// and the corners of the polygon that a flight smooths.
 #pragma once
 
 #include <filesystem>
@@ -19,5 +20,17 @@ std::string write_flight_csv(std::span<const survey::inspection::FlightSample> f
 /// commas, semicolons or blanks. Lines that start with '#' and one header line are skipped. Throws
 /// Error{bad_file} with the line of the first fault.
 std::vector<survey::inspection::FlightSample> read_flight_csv(const std::filesystem::path& file);
+
+/// Returns CSV with the header `x,y,z,heading_deg,gimbal_pitch_deg,delay_s`: metres in the mission
+/// frame, degrees clockwise from north and above the horizon, and the delay of the leg to the next
+/// corner.
+std::string write_corners_csv(std::span<const survey::inspection::Vertex> corners);
+
+/// Returns true if the first line of a file is the header of write_corners_csv().
+bool is_corner_file(const std::filesystem::path& file);
+
+/// Reads the file of write_corners_csv(). Throws Error{bad_file} with the line of the first fault,
+/// and if it contains no corner.
+std::vector<survey::inspection::Vertex> read_corners_csv(const std::filesystem::path& file);
 
 }  // namespace skycap::missions::inspection

@@ -19,12 +19,13 @@ using survey::inspection::InspectionPlan;
 
 /// Plans the flight with waypoints, or records the reason if no such flight is possible.
 void plan_flight(const config::MissionSetup& setup, const InspectionSpace& space,
-                 const std::stop_token& stop, InspectionMission& mission) {
+                 const std::optional<Eigen::Vector3d>& pad, const std::stop_token& stop,
+                 InspectionMission& mission) {
   try {
     InspectionFlight flight =
         plan_inspection_flight(setup, space,
                                {mission.plan.samples, mission.plan.cloud, mission.options.camera,
-                                mission.options.limits.acceleration, std::nullopt},
+                                mission.options.limits.acceleration, pad},
                                stop);
     check_deviation(flight, mission.options.flown_deviation);
     mission.flight = std::move(flight);
@@ -42,13 +43,18 @@ std::vector<std::string> make_warnings(const config::MissionSetup& setup,
       "that the model does not contain"};
   if (!plan.meets_goal) {
     const double attainable = static_cast<double>(plan.attainable[incidence_rule]);
+    const double seen = 100.0 * static_cast<double>(plan.evaluation.seen[incidence_rule]) /
+                        std::max(attainable, 1.0);
+    const double required = 100.0 * mission.options.goal.shares[incidence_rule];
     warnings.push_back(
-        fmt::format("the flight sees {:.2f}% of the attainable points, but the planner's "
-                    "conservative count is below the {:.2f}% that inspection.share requires; raise "
-                    "inspection.moves or lower inspection.share",
-                    100.0 * static_cast<double>(plan.evaluation.seen[incidence_rule]) /
-                        std::max(attainable, 1.0),
-                    100.0 * mission.options.goal.shares[incidence_rule]));
+        mission.is_edited
+            ? fmt::format("the flight sees {:.2f}% of the attainable points, and inspection.share "
+                          "requires {:.2f}%; add corners or lower inspection.share",
+                          seen, required)
+            : fmt::format("the flight sees {:.2f}% of the attainable points, but the planner's "
+                          "conservative count is below the {:.2f}% that inspection.share requires; "
+                          "raise inspection.moves or lower inspection.share",
+                          seen, required));
   }
   if (!mission.flight) {
     warnings.push_back(
@@ -84,9 +90,41 @@ InspectionMission plan_inspection_mission(const config::MissionSetup& setup,
   mission.plan = survey::inspection::plan_inspection(
       mission.options, space.site(), {setup.run.seed, setup.run.threads, stop, report});
   report("planning the flight with waypoints");
-  plan_flight(setup, space, stop, mission);
+  plan_flight(setup, space, std::nullopt, stop, mission);
   mission.warnings = make_warnings(setup, mission);
   return mission;
+}
+
+EditedInspection plan_edited_inspection(const InspectionPackage& package,
+                                        std::vector<survey::inspection::Vertex> corners,
+                                        const std::stop_token& stop,
+                                        const std::function<void(const std::string&)>& report) {
+  const config::MissionSetup& setup = package.setup;
+  EditedInspection edited;
+  InspectionMission& mission = edited.mission;
+  mission.is_edited = true;
+  mission.options = config::inspection_options(*setup.document);
+  mission.options.flown_deviation = flown_deviation;
+  survey::inspection::GivenPlan given =
+      follow_vertices(mission.options, package.space->site(), std::move(corners),
+                      {setup.run.seed, setup.run.threads, stop, report});
+  mission.plan = std::move(given.plan);
+  edited.problems = std::move(given.problems);
+  edited.slowed_legs = given.slowed_legs;
+  edited.added_delay = given.added_delay;
+  if (!edited.problems.empty()) return edited;
+  mission.plan.attainable[incidence_rule] = package.attainable;
+  mission.plan.meets_goal =
+      static_cast<double>(mission.plan.evaluation.seen[incidence_rule]) >=
+      mission.options.goal.shares[incidence_rule] * static_cast<double>(package.attainable);
+  report("planning the flight with waypoints");
+  plan_flight(setup, *package.space, package.pad, stop, mission);
+  if (!mission.flight && package.pad) {
+    edited.problems.push_back({0, "no route with waypoints: " + mission.flight_failure});
+    return edited;
+  }
+  mission.warnings = make_warnings(setup, mission);
+  return edited;
 }
 
 InspectionEvaluation evaluate_inspection(const config::MissionSetup& setup,

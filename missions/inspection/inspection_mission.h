@@ -9,6 +9,7 @@
 
 #include "missions/config/mission_setup.h"
 #include "missions/inspection/inspection_flight.h"
+#include "missions/inspection/inspection_package.h"
 #include "missions/inspection/inspection_site.h"
 #include "survey/inspection/flight_evaluation.h"
 #include "survey/inspection/inspection_planner.h"
@@ -22,6 +23,7 @@ struct InspectionMission {
   std::optional<InspectionFlight> flight;
   std::string flight_failure;
   std::vector<std::string> warnings;  ///< Warnings for the user, displayed last.
+  bool is_edited = false;             ///< Along given corners, without a search.
 };
 
 /// Plans the flight of a mission whose document is an inspection. Throws the errors of
@@ -29,6 +31,21 @@ struct InspectionMission {
 InspectionMission plan_inspection_mission(const config::MissionSetup& setup,
                                           const InspectionSpace& space, const std::stop_token& stop,
                                           const std::function<void(const std::string&)>& report);
+
+/// Planned inspection whose corners have been changed.
+struct EditedInspection {
+  InspectionMission mission;
+  std::vector<survey::inspection::LegProblem> problems;  ///< Empty: the flight is verified.
+  std::size_t slowed_legs = 0;  ///< Legs that are flown more slowly, to keep the motion limits.
+  double added_delay = 0.0;     ///< Sum over all legs [s].
+};
+
+/// Verifies and evaluates the flight along `corners` with the mission of `package`, and plans its
+/// route with waypoints. If the package has a route, its absence is a problem.
+EditedInspection plan_edited_inspection(const InspectionPackage& package,
+                                        std::vector<survey::inspection::Vertex> corners,
+                                        const std::stop_token& stop,
+                                        const std::function<void(const std::string&)>& report);
 
 /// Evaluates a flight of any program with the camera, the limits and the structure of a mission.
 struct InspectionEvaluation {

@@ -104,6 +104,7 @@ std::optional<InspectionPackage> read_inspection(
   InspectionPackage package;
   package.setup = std::move(summary->mission);
   package.pad = summary->pad;
+  package.attainable = summary->attainable;
   package.flight = read_flight_csv(folder / flight_name);
   try {
     package.space = std::make_shared<const InspectionSpace>(package.setup);

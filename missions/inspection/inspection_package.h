@@ -27,6 +27,7 @@ struct InspectionPackage {
   std::shared_ptr<const InspectionSpace> space;          ///< Read again from the structure's files.
   std::vector<survey::inspection::FlightSample> flight;  ///< Planned flight of the camera.
   std::optional<Eigen::Vector3d> pad;  ///< Take-off point of the route files, if there are any.
+  std::size_t attainable = 0;          ///< Points of the structure that some position sees.
 };
 
 /// Reads the inspection in `folder`. Returns nullopt for results of other missions. `overrides`

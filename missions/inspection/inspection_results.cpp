@@ -183,12 +183,22 @@ Json vertices_json(const InspectionPlan& plan) {
   return list;
 }
 
+/// Returns the figures of the search, or null for edited flights.
+Json search_json(const InspectionMission& mission) {
+  if (mission.is_edited) return {};
+  return {{"moves", mission.options.moves},
+          {"searches", mission.options.searches},
+          {"best_search", mission.plan.search},
+          {"evaluated_moves", mission.plan.evaluated_moves},
+          {"cells", mission.plan.cells}};
+}
+
 Json inspection_json(const InspectionMission& mission) {
   const InspectionPlan& plan = mission.plan;
   return {
       {"duration_s", plan.evaluation.duration},
       {"length_m", plan.evaluation.length},
-      {"first_tour_s", plan.first_duration},
+      {"first_tour_s", mission.is_edited ? Json() : Json(plan.first_duration)},
       {"range_m", mission.options.camera.range},
       {"required_clearance_m", mission.options.clearance},
       {"verified_clearance_m", plan.verified_clearance},
@@ -198,12 +208,7 @@ Json inspection_json(const InspectionMission& mission) {
        share_of(plan.evaluation.seen[incidence_rule], plan.attainable[incidence_rule])},
       {"meets_goal", plan.meets_goal},
       {"evaluation", evaluation_json(plan.evaluation)},
-      {"search",
-       {{"moves", mission.options.moves},
-        {"searches", mission.options.searches},
-        {"best_search", plan.search},
-        {"evaluated_moves", plan.evaluated_moves},
-        {"cells", plan.cells}}},
+      {"search", search_json(mission)},
       {"smoothing_s", {plan.smoothing.shorter, plan.smoothing.longer}},
       {"vertices", vertices_json(plan)},
       {"flown", flown_json(mission)},
@@ -310,9 +315,11 @@ std::string plan_text(const config::MissionSetup& setup, const InspectionMission
       "  start     ({:.2f}, {:.2f}, {:.2f}), end ({:.2f}, {:.2f}, {:.2f}), both at rest\n",
       start.position.x(), start.position.y(), start.position.z(), end.position.x(),
       end.position.y(), end.position.z());
-  text +=
-      fmt::format("  search    {} changes evaluated; flight time of the initial tour {:.0f} s\n",
-                  plan.evaluated_moves, plan.first_duration);
+  if (!mission.is_edited) {
+    text +=
+        fmt::format("  search    {} changes evaluated; flight time of the initial tour {:.0f} s\n",
+                    plan.evaluated_moves, plan.first_duration);
+  }
   if (!mission.flight) return text;
   const InspectionFlight& flight = *mission.flight;
   return text + "  files     " + deviation_text(flight, plan.cloud.size());
@@ -336,6 +343,7 @@ void stage_inspection_mission(const config::MissionSetup& setup, const Inspectio
            name == package::profile_name || package::is_flight_file(name);
   });
   folder.write(flight_name, write_flight_csv(mission.plan.samples));
+  folder.write(corners_name, write_corners_csv(mission.plan.vertices));
   for (const flight::Format format :
        {flight::Format::csv, flight::Format::ned_csv, flight::Format::tum}) {
     stage_setpoints(mission.plan.samples, format, folder);

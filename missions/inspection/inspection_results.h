@@ -14,6 +14,7 @@
 namespace skycap::missions::inspection {
 
 inline constexpr const char* flight_name = "inspection.csv";
+inline constexpr const char* corners_name = "corners.csv";
 inline constexpr const char* structure_name = "structure.ply";
 
 /// Returns the lines of an evaluation: surface seen, views, distances and limits of motion.
@@ -37,10 +38,10 @@ std::string plan_text(const config::MissionSetup& setup, const InspectionMission
 std::string warnings_text(const config::MissionSetup& setup, const InspectionMission& mission);
 
 /// Stages summary.json, the flight, and structure.ply: the points of the structure with the rules
-/// by which they are seen. The files of the flight are inspection.csv, setpoints.enu.csv,
-/// setpoints.ned.csv and camera.tum. Also stages the route files for the vehicle's autopilot, each
-/// read back and verified, and sets them in `mission`. The commit removes files of earlier runs of
-/// another kind.
+/// by which they are seen. The files of the flight are inspection.csv, corners.csv,
+/// setpoints.enu.csv, setpoints.ned.csv and camera.tum. Also stages the route files for the
+/// vehicle's autopilot, each read back and verified, and sets them in `mission`. The commit removes
+/// files of earlier runs of another kind.
 void stage_inspection_mission(const config::MissionSetup& setup, const InspectionSpace& space,
                               InspectionMission& mission, geometry::OutputFolder& folder);
 

@@ -102,7 +102,7 @@ void make_timetable(const flight::SeparationRule& rule, std::vector<Variants> va
 /// Free space of a whole fleet.
 class FleetSpace {
  public:
-  FleetSpace(flight::Obstacles rules, const flight::MeasuredSpace& measured, std::stop_token stop)
+  FleetSpace(flight::Obstacles rules, const flight::FreeSpace& measured, std::stop_token stop)
       : known_(std::move(rules)), joint_({&measured, &known_}), space_(joint_, std::move(stop)) {}
 
   const flight::FreeSpace& space() const { return space_; }
@@ -151,9 +151,47 @@ flight::FleetSplit share(flight::FleetGoal goal, flight::VerifiedCosts& costs,
               "cannot reach enough of them");
 }
 
-void stage_fleet(const std::string& name, FleetMission& fleet,
-                 const flight::MeasuredSpace& measured, std::span<const flight::Format> formats,
-                 geometry::OutputFolder& folder) {
+}  // namespace
+
+FleetMission plan_fleet(const flight::FlightOptions& options, const flight::FreeSpace& measured,
+                        const flight::Route& alone,
+                        std::span<const flight::LandingSurface> landing_surfaces, unsigned threads,
+                        const std::stop_token& stop, const FleetOrders* orders) {
+  FleetMission fleet;
+  const std::vector<Vector3d> pads = options.fleet_pads(alone.options.takeoff);
+  for (std::size_t v = 0; v < pads.size(); ++v) {
+    fleet.members.push_back({options.for_vehicle(v, pads[v]), pads[v], {}, {}});
+  }
+  const FleetSpace free(options.rules(), measured, stop);
+  flight::VerifiedCosts costs(alone.capture_points, to_fleet_members(fleet.members), free.space(),
+                              threads);
+  fleet.unreached = costs.unreached();
+  flight::FleetSplit split;
+  if (orders != nullptr) {
+    for (const std::vector<std::uint32_t>& order : *orders) split.parts.push_back({order, 0.0});
+    costs.verify_legs(split);
+  } else {
+    split = share(options.fleet.goal, costs, compute_order(alone.capture_points, fleet.unreached),
+                  threads);
+  }
+  std::vector<Variants> variants(pads.size());
+  for (std::size_t v = 0; v < pads.size(); ++v) {
+    std::vector<std::uint32_t> order = split.parts[v].capture_points;
+    for (int turns = 0; turns < 2 && !order.empty(); ++turns, std::ranges::reverse(order)) {
+      const FleetMember& member = fleet.members[v];
+      variants[v].push_back(plan_flight(member.flight, measured, member.pad,
+                                        costs.ordered_capture_points(v, order), landing_surfaces,
+                                        stop));
+    }
+  }
+  make_timetable(options.fleet.rule(), std::move(variants), fleet);
+  fleet.bound = fleet_bound(costs.problem(), fleet.makespan);
+  fleet.lower_bound = fleet_bound(costs.lower_bound(), fleet.makespan);
+  return fleet;
+}
+
+void stage_fleet(const std::string& name, FleetMission& fleet, const flight::FreeSpace& measured,
+                 std::span<const flight::Format> formats, geometry::OutputFolder& folder) {
   for (std::size_t v = 0; v < fleet.members.size(); ++v) {
     FleetMember& member = fleet.members[v];
     if (member.route.sorties.empty()) continue;
@@ -176,42 +214,9 @@ void stage_fleet(const std::string& name, FleetMission& fleet,
   folder.write(timetable_name, timetable_csv(fleet.timetable));
 }
 
-}  // namespace
-
-FleetMission plan_fleet(const flight::FlightOptions& options, const flight::MeasuredSpace& measured,
-                        const flight::Route& alone,
-                        std::span<const flight::LandingSurface> landing_surfaces, unsigned threads,
-                        const std::stop_token& stop) {
-  FleetMission fleet;
-  const std::vector<Vector3d> pads = options.fleet_pads(alone.options.takeoff);
-  for (std::size_t v = 0; v < pads.size(); ++v) {
-    fleet.members.push_back({options.for_vehicle(v, pads[v]), pads[v], {}, {}});
-  }
-  const FleetSpace free(options.rules(), measured, stop);
-  flight::VerifiedCosts costs(alone.capture_points, to_fleet_members(fleet.members), free.space(),
-                              threads);
-  fleet.unreached = costs.unreached();
-  const flight::FleetSplit split = share(
-      options.fleet.goal, costs, compute_order(alone.capture_points, fleet.unreached), threads);
-  std::vector<Variants> variants(pads.size());
-  for (std::size_t v = 0; v < pads.size(); ++v) {
-    std::vector<std::uint32_t> order = split.parts[v].capture_points;
-    for (int turns = 0; turns < 2 && !order.empty(); ++turns, std::ranges::reverse(order)) {
-      const FleetMember& member = fleet.members[v];
-      variants[v].push_back(plan_flight(member.flight, measured, member.pad,
-                                        costs.ordered_capture_points(v, order), landing_surfaces,
-                                        stop));
-    }
-  }
-  make_timetable(options.fleet.rule(), std::move(variants), fleet);
-  fleet.bound = fleet_bound(costs.problem(), fleet.makespan);
-  fleet.lower_bound = fleet_bound(costs.lower_bound(), fleet.makespan);
-  return fleet;
-}
-
 std::shared_ptr<const FleetMission> staged_fleet(
     const std::string& name, const flight::FlightOptions& options,
-    const flight::MeasuredSpace& measured, const flight::Route& alone,
+    const flight::FreeSpace& measured, const flight::Route& alone,
     std::span<const flight::LandingSurface> landing_surfaces,
     std::span<const flight::Format> formats, geometry::OutputFolder& folder, unsigned threads,
     const std::stop_token& stop) {

@@ -1,6 +1,7 @@
 /// Division of a finished survey among several vehicles.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <stop_token>
@@ -9,7 +10,7 @@
 
 #include <Eigen/Core>
 
-#include "flight/clearance/measured_space.h"
+#include "flight/clearance/clearance.h"
 #include "flight/fleet/fleet_bound.h"
 #include "flight/flight_options.h"
 #include "flight/route/route.h"
@@ -47,22 +48,31 @@ struct FleetMission {
 /// Upper limit of reported distances between vehicles [m].
 inline constexpr double reported_distance = 100.0;
 
+/// Division that is set by the caller: indices of stations per vehicle, in flight order.
+using FleetOrders = std::vector<std::vector<std::uint32_t>>;
+
 /// Divides the stations of `alone`, the verified route of the first vehicle, among the vehicles.
 /// The division is based on the costs of verified legs. Each vehicle's route is planned and
 /// verified like in plan_flight(). Take-offs are delayed until the separation of all flights is
-/// verified. Throws all errors of plan_route(). Throws Error{bad_config} if the stations cannot be
-/// divided, or if a vehicle violates the clearance to one on the ground.
-FleetMission plan_fleet(const flight::FlightOptions& options, const flight::MeasuredSpace& measured,
+/// verified. With `orders`, the division is that of the caller, and each vehicle flies its stations
+/// in this order or in reverse; stations that it cannot reach are listed by its route. Throws all
+/// errors of plan_route(). Throws Error{bad_config} if the stations cannot be divided, or if a
+/// vehicle violates the clearance to one on the ground.
+FleetMission plan_fleet(const flight::FlightOptions& options, const flight::FreeSpace& measured,
                         const flight::Route& alone,
                         std::span<const flight::LandingSurface> landing_surfaces, unsigned threads,
-                        const std::stop_token& stop = {});
+                        const std::stop_token& stop = {}, const FleetOrders* orders = nullptr);
+
+/// Stages the timetable and the route files of each vehicle, see staged_fleet().
+void stage_fleet(const std::string& name, FleetMission& fleet, const flight::FreeSpace& measured,
+                 std::span<const flight::Format> formats, geometry::OutputFolder& folder);
 
 /// Plans the fleet mission like plan_fleet(), and stages its timetable and the route files of each
 /// vehicle. The files are in `formats` and in the native format of the vehicle's autopilot. Without
 /// `formats`, package_formats() is used. `name` is the name of the mission.
 std::shared_ptr<const FleetMission> staged_fleet(
     const std::string& name, const flight::FlightOptions& options,
-    const flight::MeasuredSpace& measured, const flight::Route& alone,
+    const flight::FreeSpace& measured, const flight::Route& alone,
     std::span<const flight::LandingSurface> landing_surfaces,
     std::span<const flight::Format> formats, geometry::OutputFolder& folder, unsigned threads,
     const std::stop_token& stop = {});

@@ -11,6 +11,7 @@
 #include "flight/flown/track_simplification.h"
 #include "geometry/angle.h"
 #include "geometry/error.h"
+#include "missions/package/fleet_report.h"
 #include "missions/support/number_text.h"
 
 namespace skycap::missions::package {
@@ -187,22 +188,102 @@ void plan_import(ImportedFlight& flight, const flight::FlightOptions& given,
 
 namespace {
 
+/// Returns the waypoints of each vehicle, or std::nullopt if the file names no vehicles.
+std::optional<FleetOrders> find_orders(const flight::ImportedRoute& route, std::size_t vehicles) {
+  FleetOrders orders(vehicles);
+  for (std::size_t i = 0; i < route.points.size(); ++i) {
+    const ImportedPoint& point = route.points[i];
+    if (point.vehicle == 0) return std::nullopt;
+    if (point.vehicle > vehicles) {
+      throw Error(ErrorKind::bad_file,
+                  fmt::format("{}: vehicle {} is unknown; the fleet has {}", point.item,
+                              point.vehicle, support::counted(vehicles, "vehicle")));
+    }
+    orders[point.vehicle - 1].push_back(static_cast<std::uint32_t>(i));
+  }
+  return orders;
+}
+
+}  // namespace
+
+void plan_fleet_import(ImportedFlight& flight, const flight::FlightOptions& given,
+                       const ImportSpace& space, const Vector3d& pad, const ImportOptions& import,
+                       unsigned threads, const std::stop_token& stop) {
+  if (flight.route.points.empty()) {
+    throw Error(ErrorKind::bad_file, "all positions are at the take-off point");
+  }
+  const std::optional<FleetOrders> orders = find_orders(flight.route, given.fleet.names.size());
+  flight::FlightOptions options = with_fixed_order(given);
+  options.style = flight::FlightStyle::stop;
+  flight::Route all;
+  all.capture_points = import_capture_points(flight.route, options, import.captures);
+  all.options.takeoff = pad;
+  flight.fleet =
+      std::make_shared<FleetMission>(plan_fleet(options, *space.space, all, space.landing_surfaces,
+                                                threads, stop, orders ? &*orders : nullptr));
+  std::vector<std::string>& missed = import.repairs ? flight.skipped : flight.problems;
+  const auto add = [&](const std::vector<flight::Unreached>& unreached, const std::string& whom) {
+    for (const flight::Unreached& one : unreached) {
+      missed.push_back(fmt::format("waypoint {}{}: {}",
+                                   flight.route.points[one.capture_point.view_index].item, whom,
+                                   one.reason));
+    }
+  };
+  if (!orders) add(flight.fleet->unreached, "");
+  SurveyMission mission;
+  for (std::size_t v = 0; v < flight.fleet->members.size(); ++v) {
+    const flight::Route& route = flight.fleet->members[v].route;
+    add(route.unreached, fmt::format(" of vehicle {}", v + 1));
+    if (mission.route.sorties.empty()) mission.route = route;
+  }
+  if (mission.route.sorties.empty()) flight.problems = missed;
+  if (!flight.problems.empty()) return;
+  mission.image_motion = options.image_motion_bounds();
+  flight.mission = std::move(mission);
+}
+
+namespace {
+
 /// Returns the numbers of waypoints and captures, and a warning for legs that DJI apps reject.
-std::string waypoints_text(const flight::Route& route) {
+std::string waypoints_text(const std::vector<const flight::Route*>& routes) {
   // DJI Mobile SDK, DJIMutableWaypointMission: 0.5 to 2000 m between adjacent waypoints.
   constexpr double min_dji_leg = 0.5;
-  std::size_t captures = 0, short_legs = 0;
-  for (const flight::CapturePoint& point : route.capture_points) {
-    captures += point.captures > 0 ? 1 : 0;
+  std::size_t captures = 0, waypoints = 0, short_legs = 0;
+  for (const flight::Route* route : routes) {
+    waypoints += route->capture_points.size();
+    for (const flight::CapturePoint& point : route->capture_points) {
+      captures += point.captures > 0 ? 1 : 0;
+    }
+    if (route->vehicle.autopilot != flight::AutopilotType::dji) continue;
+    for (const flight::Leg& leg : route->legs) short_legs += leg.length < min_dji_leg ? 1 : 0;
   }
-  for (const flight::Leg& leg : route.legs) short_legs += leg.length < min_dji_leg ? 1 : 0;
-  std::string text = fmt::format("  captures  at {} of {}\n", captures,
-                                 support::counted(route.capture_points.size(), "waypoint"));
-  if (short_legs > 0 && route.vehicle.autopilot == flight::AutopilotType::dji) {
+  std::string text =
+      fmt::format("  captures  at {} of {}\n", captures, support::counted(waypoints, "waypoint"));
+  if (short_legs > 0) {
     text += fmt::format("  Warning: {} shorter than {:g} m, which DJI apps may reject\n",
                         support::counted(short_legs, "leg"), min_dji_leg);
   }
   return text;
+}
+
+/// Returns one line per vehicle, the separation and the timetable.
+std::string vehicles_text(const FleetMission& fleet) {
+  std::string text;
+  for (std::size_t v = 0; v < fleet.members.size(); ++v) {
+    const flight::Route& route = fleet.members[v].route;
+    if (route.sorties.empty()) {
+      text += fmt::format("  vehicle {} {}, no waypoint\n", v + 1,
+                          fleet.members[v].flight.vehicle_name);
+      continue;
+    }
+    text += fmt::format(
+        "  vehicle {} {}, {}, {:.1f} m in {:.1f} min, {}; clearance minimum {:.2f} m, verified for "
+        "every leg; required {:.2f} m\n",
+        v + 1, route.vehicle.name, support::counted(route.capture_points.size(), "waypoint"),
+        route.length, route.duration / 60.0, support::counted(route.sorties.size(), "sortie"),
+        route.min_clearance, route.options.clearance.total());
+  }
+  return text + fleet_text(fleet, false);
 }
 
 }  // namespace
@@ -225,11 +306,18 @@ std::string import_text(const ImportedFlight& flight, const std::string& file,
     text += fmt::format("  repaired  leg from {} to {}: {:.1f} m instead of {:.1f} m\n", leg.from,
                         leg.to, leg.length, leg.straight);
   }
-  if (flight.mission) text += waypoints_text(flight.mission->route);
+  std::vector<const flight::Route*> routes;
+  if (flight.fleet) {
+    for (const FleetMember& member : flight.fleet->members) routes.push_back(&member.route);
+  } else if (flight.mission) {
+    routes.push_back(&flight.mission->route);
+  }
+  if (flight.mission) text += waypoints_text(routes);
   for (const std::string& waypoint : flight.skipped) text += "  skipped   " + waypoint + "\n";
   for (const std::string& warning : flight.route.warnings) {
     text += "  Warning: " + warning + "\n";
   }
+  if (flight.fleet) text += vehicles_text(*flight.fleet);
   return text;
 }
 

@@ -1,9 +1,10 @@
-/// Verified flight along a route from another program or from a flown track.
+/// Verified flight along a route from another program or from a flown track, also of a fleet.
 #pragma once
 
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <stop_token>
@@ -16,6 +17,7 @@
 #include "flight/flight_options.h"
 #include "flight/flown/imported_route.h"
 #include "flight/route/landing_surface.h"
+#include "missions/package/fleet_mission.h"
 #include "missions/package/flight_files.h"
 
 namespace skycap::missions::package {
@@ -61,9 +63,11 @@ struct ImportedFlight {
   /// Legs and waypoints that are not verified, one sentence each. Empty: the flight is complete.
   std::vector<std::string> problems;
   std::size_t unverified_legs = 0;
-  std::vector<ChangedLeg> changed;       ///< Legs that go round an obstacle, only with `repairs`.
-  std::vector<std::string> skipped;      ///< Skipped waypoints, only with `repairs`.
-  std::optional<SurveyMission> mission;  ///< Empty if there are problems.
+  std::vector<ChangedLeg> changed;   ///< Legs that go round an obstacle, only with `repairs`.
+  std::vector<std::string> skipped;  ///< Skipped waypoints, only with `repairs`.
+  /// Empty if there are problems. The route of a fleet is that of its first vehicle with waypoints.
+  std::optional<SurveyMission> mission;
+  std::shared_ptr<FleetMission> fleet;  ///< Null for one vehicle.
 };
 
 /// Removes the climb and the landing from a route and simplifies it.
@@ -84,7 +88,16 @@ void plan_import(ImportedFlight& flight, const flight::FlightOptions& options,
                  const ImportSpace& space, const Eigen::Vector3d& pad, const ImportOptions& import,
                  const std::stop_token& stop);
 
-/// Returns the lines that the program prints about the route, without those of its flight.
+/// Plans the flights of a fleet through the waypoints, each by the vehicle that the file names and
+/// in its order. Without vehicles in the file, the waypoints are divided by plan_fleet(). Legs that
+/// are not free go round the obstacles. Waypoints that a vehicle cannot reach are problems, or are
+/// skipped with `repairs`. Throws Error{bad_file} for a vehicle that the fleet does not have, and
+/// the errors of plan_fleet().
+void plan_fleet_import(ImportedFlight& flight, const flight::FlightOptions& options,
+                       const ImportSpace& space, const Eigen::Vector3d& pad,
+                       const ImportOptions& import, unsigned threads, const std::stop_token& stop);
+
+/// Returns the lines that the program prints about the route, and those of the flights of a fleet.
 std::string import_text(const ImportedFlight& flight, const std::string& file,
                         const flight::FlightOptions& options);
 

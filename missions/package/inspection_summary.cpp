@@ -44,6 +44,7 @@ std::optional<InspectionSummary> read_inspection_summary(
       remove_limits(settings);
     }
     InspectionSummary summary{mission_from_settings(settings, name, overrides), std::nullopt};
+    summary.attainable = json.at("inspection").at("attainable_points").get<std::size_t>();
     if (json.contains("flight")) {
       summary.pad =
           summary.mission.flight().takeoff.value_or(support::to_vector(json["flight"].at("pad")));

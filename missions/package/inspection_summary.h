@@ -1,6 +1,7 @@
 /// Summary of an inspection in its results folder.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <vector>
@@ -15,6 +16,7 @@ namespace skycap::missions::package {
 struct InspectionSummary {
   config::MissionSetup mission;        ///< Mission with all effective keys.
   std::optional<Eigen::Vector3d> pad;  ///< Take-off point of the route files, if there are any.
+  std::size_t attainable = 0;          ///< Points of the structure that some position sees.
 };
 
 /// Reads the summary of the inspection in `folder`. Returns nullopt for results of other missions.

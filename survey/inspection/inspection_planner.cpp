@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "geometry/angle.h"
 #include "geometry/error.h"
 #include "geometry/interrupted.h"
 #include "geometry/parallel.h"
@@ -208,6 +209,144 @@ void require_more_views(const FlightEvaluation& evaluation, const PerRule<std::s
   }
 }
 
+/// Throws Error{bad_config} if a flight lasts longer than a day.
+void require_short_flight(std::span<const double> durations, const Smoothing& smoothing) {
+  constexpr double max_duration = 24.0 * 3600.0;
+  if (flight_duration(durations, smoothing) <= max_duration) return;
+  throw Error(ErrorKind::bad_config,
+              "the limits of motion allow no flight around the structure in a day; raise the "
+              "limits of speed, acceleration, jerk or yaw");
+}
+
+/// Legs of a polygon that overlap a time of flight, each within the reach of the smoothing.
+class LegTimes {
+ public:
+  LegTimes(std::span<const double> durations, const Smoothing& smoothing)
+      : reach_(smoothing.reach()) {
+    double time = smoothing.reach();
+    for (const double duration : durations) starts_.push_back(time), time += duration;
+    starts_.push_back(time);
+  }
+  std::size_t count() const { return starts_.size() - 1; }
+  double start(std::size_t leg) const { return starts_[leg]; }
+  double end(std::size_t leg) const { return starts_[leg + 1]; }
+  bool affects(std::size_t leg, double time) const {
+    return start(leg) < time + reach_ && end(leg) > time - reach_;
+  }
+
+ private:
+  std::vector<double> starts_;  // flight times of the vertices
+  double reach_;
+};
+
+/// Returns the times of a flight at which it exceeds the acceleration or the jerk.
+std::vector<double> find_excesses(std::span<const Vertex> vertices,
+                                  std::span<const double> durations, const Smoothing& smoothing,
+                                  const MotionLimits& limits) {
+  // Half of the tolerances of the evaluation, so that planned flights remain as they are.
+  constexpr double acceleration_share = 1.005, jerk_share = 1.02, min_length = 1e-6;
+  const LegTimes legs(durations, smoothing);
+  std::vector<double> times;
+  IntervalCurve curve;
+  for (std::size_t i = 0; i <= vertices.size(); ++i) {
+    curve.set(vertices, durations, smoothing, i);
+    const double origin = legs.start(i == 0 ? 0 : i - 1);
+    const std::vector<double>& jumps = curve.jumps();
+    for (std::size_t k = 0; k < jumps.size(); ++k) {
+      const double acceleration = curve.acceleration(jumps[k]).head<3>().norm();
+      if (acceleration > acceleration_share * limits.acceleration) {
+        times.push_back(origin + jumps[k]);
+      }
+      if (k == 0 || jumps[k] - jumps[k - 1] < min_length) continue;
+      const double middle = 0.5 * (jumps[k - 1] + jumps[k]);
+      if (curve.jerk(middle).head<3>().norm() > jerk_share * limits.jerk) {
+        times.push_back(origin + middle);
+      }
+    }
+  }
+  return times;
+}
+
+/// Lengthens the delays of legs until the flight keeps the limits of acceleration and jerk. Both
+/// are proportional to the speed of the polygon, so that this ends.
+void slow_legs(std::vector<Vertex>& vertices, const Smoothing& smoothing,
+               const MotionLimits& limits, const std::stop_token& stop) {
+  constexpr double step = 0.1;
+  constexpr int max_rounds = 200;
+  for (int round = 0; round < max_rounds; ++round) {
+    if (stop.stop_requested()) throw skycap::Interrupted();
+    const std::vector<double> durations = leg_durations(vertices, smoothing);
+    const std::vector<double> excesses = find_excesses(vertices, durations, smoothing, limits);
+    if (excesses.empty()) return;
+    const LegTimes legs(durations, smoothing);
+    for (std::size_t leg = 0; leg < legs.count(); ++leg) {
+      const bool is_fast =
+          std::ranges::any_of(excesses, [&](double time) { return legs.affects(leg, time); });
+      if (is_fast) vertices[leg].delay += step * durations[leg];
+    }
+  }
+}
+
+/// Returns the samples of a flight on a leg. The first and the last leg include the rest.
+std::span<const FlightSample> samples_of(std::span<const FlightSample> flight, const LegTimes& legs,
+                                         std::size_t leg) {
+  const auto at = [&](double time) {
+    return std::min(flight.size() - 1,
+                    static_cast<std::size_t>(std::max(0.0, std::floor(time / sample_interval))));
+  };
+  const std::size_t begin = leg == 0 ? 0 : at(legs.start(leg));
+  const std::size_t end = leg + 1 == legs.count()
+                              ? flight.size() - 1
+                              : std::min(flight.size() - 1, at(legs.end(leg)) + 1);
+  return flight.subspan(begin, end - begin + 1);
+}
+
+/// Returns the violations of a leg: clearance, heights and pitch.
+std::vector<std::string> find_problems(const InspectionOptions& options, const InspectionSite& site,
+                                       const StructureCloud& cloud,
+                                       std::span<const FlightSample> leg) {
+  std::vector<std::string> problems;
+  const double distance = verified_distance(options, site, cloud, leg);
+  if (distance < options.planned_clearance()) {
+    std::size_t nearest = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i + 1 < leg.size(); ++i) {
+      const double found = verified_distance(options, site, cloud, leg.subspan(i, 2));
+      if (found < least) least = found, nearest = i;
+    }
+    const auto centimetres = [](double length) { return 0.01 * std::round(100.0 * length); };
+    const Vector3d& at = leg[nearest].position;
+    problems.push_back(joined_text(
+        centimetres(std::max(distance, 0.0)), " m from the nearest obstacle at (",
+        centimetres(at.x()), ", ", centimetres(at.y()), ", ", centimetres(at.z()), "); at least ",
+        options.planned_clearance(), " m required (clearance ", options.clearance, " m + ",
+        options.flown_deviation, " m for the flown curve)"));
+  }
+  constexpr double rounding = 1e-6;
+  double lowest = leg.front().position.z(), highest = lowest;
+  double least_pitch = leg.front().pitch, most_pitch = least_pitch;
+  for (const FlightSample& sample : leg) {
+    lowest = std::min(lowest, sample.position.z());
+    highest = std::max(highest, sample.position.z());
+    least_pitch = std::min(least_pitch, sample.pitch);
+    most_pitch = std::max(most_pitch, sample.pitch);
+  }
+  if (site.min_height && lowest < *site.min_height - rounding) {
+    problems.push_back(
+        joined_text("height ", lowest, " m is below the minimum of ", *site.min_height, " m"));
+  }
+  if (site.max_height && highest > *site.max_height + rounding) {
+    problems.push_back(
+        joined_text("height ", highest, " m is above the maximum of ", *site.max_height, " m"));
+  }
+  if (least_pitch < options.pitch.min - rounding || most_pitch > options.pitch.max + rounding) {
+    constexpr double degrees = geometry::degrees_per_radian;
+    problems.push_back(joined_text("the gimbal pitch is outside of ", degrees * options.pitch.min,
+                                   " to ", degrees * options.pitch.max, " degrees"));
+  }
+  return problems;
+}
+
 }  // namespace
 
 void InspectionOptions::validate() const {
@@ -266,13 +405,8 @@ InspectionPlan plan_inspection(const InspectionOptions& options, const Inspectio
   const ViewCandidates candidates = draw_candidates(space, cells, tour, random);
   check_stop();
   const std::vector<Vertex> first = make_first_tour(space, cells, candidates, tour, run.stop);
-  constexpr double max_duration = 24.0 * 3600.0;
   const Smoothing smoothing = make_smoothing(options.limits);
-  if (!(flight_duration(leg_durations(first, smoothing), smoothing) <= max_duration)) {
-    throw Error(ErrorKind::bad_config,
-                "the limits of motion allow no flight around the structure in a day; raise the "
-                "limits of speed, acceleration, jerk or yaw");
-  }
+  require_short_flight(leg_durations(first, smoothing), smoothing);
 
   SearchOptions search;
   search.limits = options.limits;
@@ -334,6 +468,46 @@ InspectionPlan plan_inspection(const InspectionOptions& options, const Inspectio
   plan.cells = cells.computed();
   plan.cloud = cloud;
   return plan;
+}
+
+GivenPlan follow_vertices(const InspectionOptions& options, const InspectionSite& site,
+                          std::vector<Vertex> vertices, const InspectionRun& run) {
+  options.validate();
+  if (vertices.size() < 2) {
+    throw Error(ErrorKind::bad_config, "an inspection flight requires at least two corners");
+  }
+  const unsigned threads = geometry::thread_count(run.threads);
+  geometry::RandomNumbers random(run.seed, 0);
+  GivenPlan given;
+  InspectionPlan& plan = given.plan;
+  plan.cloud = shuffled(make_structure_cloud(site.points, site.normals), random);
+  plan.smoothing = make_smoothing(options.limits);
+  plan.vertices = std::move(vertices);
+  const std::vector<Vertex> before = plan.vertices;
+  slow_legs(plan.vertices, plan.smoothing, options.limits, run.stop);
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const double added = plan.vertices[i].delay - before[i].delay;
+    given.slowed_legs += added > 0.0 ? 1 : 0;
+    given.added_delay += added;
+  }
+  const std::vector<double> durations = leg_durations(plan.vertices, plan.smoothing);
+  require_short_flight(durations, plan.smoothing);
+  plan.samples = sample_flight(plan.vertices, plan.smoothing, sample_interval);
+  const LegTimes legs(durations, plan.smoothing);
+  for (std::size_t leg = 0; leg < legs.count(); ++leg) {
+    if (run.stop.stop_requested()) throw skycap::Interrupted();
+    for (std::string& what :
+         find_problems(options, site, plan.cloud, samples_of(plan.samples, legs, leg))) {
+      given.problems.push_back({leg, std::move(what)});
+    }
+  }
+  if (!given.problems.empty()) return given;
+  plan.verified_clearance = verified_distance(options, site, plan.cloud, plan.samples);
+  plan.evaluation = evaluate_flight(plan.samples, plan.cloud, evaluation_options(options, threads));
+  if (!plan.evaluation.keeps_limits()) {
+    given.problems.push_back({0, "the flight exceeds the motion limits of the vehicle"});
+  }
+  return given;
 }
 
 }  // namespace skycap::survey::inspection

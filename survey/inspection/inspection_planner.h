@@ -93,4 +93,25 @@ inline constexpr double sample_interval = 0.1;
 InspectionPlan plan_inspection(const InspectionOptions& options, const InspectionSite& site,
                                const InspectionRun& run);
 
+/// Leg of a given polygon that violates a requirement.
+struct LegProblem {
+  std::size_t leg = 0;  ///< From vertex `leg` to the next one.
+  std::string what;
+};
+
+/// Flight along a given polygon.
+struct GivenPlan {
+  InspectionPlan plan;               ///< Without the figures of a search.
+  std::vector<LegProblem> problems;  ///< Empty: the flight keeps the clearance and all limits.
+  std::size_t slowed_legs = 0;       ///< Legs with a longer delay than given.
+  double added_delay = 0.0;          ///< Sum over all legs [s].
+};
+
+/// Evaluates and verifies the flight along `vertices` like the flight of plan_inspection(). Delays
+/// are lengthened where the flight would exceed the limits of acceleration or jerk. Throws
+/// Error{bad_config} for invalid options, and with fewer than two vertices. Throws Interrupted
+/// after a stop request.
+GivenPlan follow_vertices(const InspectionOptions& options, const InspectionSite& site,
+                          std::vector<Vertex> vertices, const InspectionRun& run);
+
 }  // namespace skycap::survey::inspection

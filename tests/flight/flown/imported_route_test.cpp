@@ -81,6 +81,22 @@ TEST(ImportedRoute, ReadsWaypointTablesInTheMissionFrameWithoutAGeoreference) {
   EXPECT_THROW(read(""), Error);
 }
 
+TEST(ImportedRoute, ReadsTheVehiclesOfAFleet) {
+  const TemporaryFolder folder;
+  const auto read = [&](const std::string& rows) {
+    const std::string text = "x,y,z,heading_deg,gimbal_pitch_deg,photos,vehicle\n" + rows;
+    return read_imported_route(folder.file("route.csv", text), FlightFacts{}, false,
+                               TrackHeights::automatic);
+  };
+  const ImportedRoute route = read("1,2,3,0,0,1,2\n4,5,6,0,0,1,1\n");
+  ASSERT_EQ(route.points.size(), 2U);
+  EXPECT_EQ(route.points[0].vehicle, 2U);
+  EXPECT_EQ(route.points[1].vehicle, 1U);
+  for (const char* row : {"1,2,3,0,0,1", "1,2,3,0,0,1,0", "1,2,3,0,0,1,1.5", "1,2,3,0,0,1,x"}) {
+    EXPECT_THAT(thrown_message([&] { read(row); }), HasSubstr("line 2")) << row;
+  }
+}
+
 TEST(ImportedRoute, ReadsHeadingsAndPitchesOfWaypointTables) {
   const Vector3d first(10, 20, 31), second(30, -10, 41);
   const double above_pad = ellipsoid_height(first) - ellipsoid_height(pad);

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "flight/export/text.h"
 #include "tests/missions/inspection/block.h"
 #include "tests/missions/run_skycap.h"
 
@@ -14,6 +15,7 @@ namespace skycap::missions {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 using tests::ProgramRun;
 using tests::read_content;
 using tests::run_skycap;
@@ -112,6 +114,91 @@ TEST_F(InspectionCommands, ExportRejectsFormatsThatCannotCommandTheFlight) {
               HasSubstr("--lost requires a fleet"));
   EXPECT_THAT(export_to({"--format", "kmz", "--set", "flight.clearance=6"}).err,
               HasSubstr("no waypoint can be reached"));
+}
+
+class EditedInspection : public InspectionCommands {
+ protected:
+  EditedInspection() { EXPECT_EQ(plan().exit_code, 0); }
+
+  /// Returns the lines of corners.csv, the header first.
+  std::vector<std::string> corners() const {
+    return flight::split_lines(read_content(folder_.path() / "out" / "corners.csv"));
+  }
+  ProgramRun verify(const std::vector<std::string>& lines, const std::string& out = "edited",
+                    const std::vector<std::string>& more = {}) {
+    std::string text;
+    for (const std::string& line : lines) text += line + "\n";
+    std::vector<std::string> arguments{"--route", folder_.write("edited.csv", text), "--out",
+                                       folder_ / out};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return export_to(arguments);
+  }
+  Json summary(const std::string& folder) const {
+    return Json::parse(read_content(folder_.path() / folder / "summary.json"));
+  }
+};
+
+TEST_F(EditedInspection, EqualsThePlanForUnchangedCorners) {
+  const ProgramRun run = verify(corners());
+  EXPECT_EQ(run.exit_code, 0) << run.out << run.err;
+  EXPECT_THAT(run.out, HasSubstr("block: verified\n"));
+  EXPECT_THAT(run.out, Not(HasSubstr("slowed")));
+  const Json planned = summary("out")["inspection"], edited = summary("edited")["inspection"];
+  EXPECT_NEAR(edited["duration_s"], planned["duration_s"], 1e-4);
+  EXPECT_NEAR(edited["verified_clearance_m"], planned["verified_clearance_m"], 1e-4);
+  EXPECT_NEAR(edited["evaluation"]["incidence"]["share"],
+              planned["evaluation"]["incidence"]["share"], 2e-3);
+  EXPECT_EQ(edited["attainable_points"], planned["attainable_points"]);
+  EXPECT_TRUE(edited["search"].is_null());
+  for (const char* name : {"mission.kmz", "camera.tum", "structure.ply", "report.html"}) {
+    EXPECT_TRUE(exists(std::string("edited/") + name)) << name;
+  }
+}
+
+TEST_F(EditedInspection, IsAnInspectionThatIsEditedExportedAndFlownAgain) {
+  std::vector<std::string> lines = corners();
+  std::vector<std::string> fields = flight::split(lines[3], ',');
+  fields[2] = std::to_string(std::stod(fields[2]) + 1.0);  // a metre higher
+  lines[3] = fields[0];
+  for (std::size_t i = 1; i < fields.size(); ++i) lines[3] += "," + fields[i];
+  const ProgramRun run = verify(lines);
+  ASSERT_EQ(run.exit_code, 0) << run.out << run.err;
+  EXPECT_NEAR(summary("edited")["inspection"]["vertices"][2]["position"][2], std::stod(fields[2]),
+              1e-6);
+  const ProgramRun flown =
+      run_skycap({"fly-test", folder_ / "edited", "--flights", "3", "--returns", "10"});
+  EXPECT_EQ(flown.exit_code, 0) << flown.out << flown.err;
+  const ProgramRun again = run_skycap({"export", folder_ / "edited", "--route",
+                                       folder_ / "edited/corners.csv", "--out", folder_ / "again"});
+  EXPECT_EQ(again.exit_code, 0) << again.out << again.err;
+  EXPECT_EQ(read_content(folder_.path() / "again" / "corners.csv"),
+            read_content(folder_.path() / "edited" / "corners.csv"));
+}
+
+TEST_F(EditedInspection, WritesNothingIfALegViolatesTheClearance) {
+  std::vector<std::string> lines = corners();
+  lines[4] = "0,0,6,0,-30,0";  // a metre above the block
+  const ProgramRun run = verify(lines);
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.out, HasSubstr("leg 4 (line 5 to line 6): "));
+  EXPECT_THAT(run.out, HasSubstr("at least 2.2 m required (clearance 2 m + 0.2 m for the flown"));
+  EXPECT_THAT(run.out, HasSubstr("; move the corners; no file written"));
+  EXPECT_FALSE(exists("edited"));
+}
+
+TEST_F(EditedInspection, RejectsUnsuitableFilesFoldersAndOptions) {
+  std::vector<std::string> lines = corners();
+  EXPECT_THAT(verify(lines, "edited", {"--repair"}).err, HasSubstr("contains the corners of an"));
+  EXPECT_THAT(verify({lines[0]}).err, HasSubstr("edited.csv:1: contains no corner"));
+  EXPECT_THAT(verify({lines[0], lines[1]}).err, HasSubstr("at least two corners"));
+  for (const char* row : {"1,2,3,4,5", "1,2,3,4,5,-1", "1,2,3,400,5,0", "1,2,3,4,95,0",
+                          "1,2,x,4,5,0", "1e9,2,3,4,5,0", "1,2,3,4,5,6,7"}) {
+    EXPECT_THAT(verify({lines[0], lines[1], row}).err, HasSubstr("edited.csv:3: ")) << row;
+  }
+  const ProgramRun mission = run_skycap(
+      {"export", mission_, "--route", folder_ / "edited.csv", "--out", folder_ / "edited"});
+  EXPECT_THAT(mission.err, HasSubstr("is not the results folder of an inspection"));
+  EXPECT_FALSE(exists("edited"));
 }
 
 TEST_F(InspectionCommands, FlyTestStatesThatThereAreNoRouteFiles) {

@@ -247,6 +247,65 @@ TEST(PlanInspection, SeesAllPointsByPixelsIfRequired) {
   EXPECT_GE(plan.evaluation.seen[0] + 3, plan.attainable[0]);
 }
 
+TEST(FollowVertices, GivesThePlannedFlightForItsVertices) {
+  const InspectionSite site = cube_site();
+  const InspectionPlan plan = plan_inspection(quick_options(), site, {});
+  const GivenPlan given = follow_vertices(quick_options(), site, plan.vertices, {});
+  EXPECT_TRUE(given.problems.empty());
+  EXPECT_EQ(given.slowed_legs, 0U);
+  EXPECT_EQ(given.plan.vertices, plan.vertices);
+  EXPECT_EQ(given.plan.evaluation.seen, plan.evaluation.seen);
+  EXPECT_EQ(given.plan.verified_clearance, plan.verified_clearance);
+  ASSERT_EQ(given.plan.samples.size(), plan.samples.size());
+  EXPECT_EQ(given.plan.samples.back().position, plan.samples.back().position);
+}
+
+// A reversal at full speed needs twice the acceleration of the limit.
+TEST(FollowVertices, SlowsLegsUntilTheMotionLimitsAreKept) {
+  std::vector<Vertex> vertices(5);
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    vertices[i].position = {i % 2 == 0 ? -9.0 : 9.0, -7.0, 0.5 * static_cast<double>(i)};
+    vertices[i].yaw = 1.5;
+  }
+  const GivenPlan given = follow_vertices(quick_options(), cube_site(), vertices, {});
+  EXPECT_TRUE(given.problems.empty());
+  EXPECT_GT(given.slowed_legs, 0U);
+  EXPECT_GT(given.added_delay, 0.0);
+  EXPECT_TRUE(given.plan.evaluation.keeps_limits());
+  EXPECT_GT(given.plan.evaluation.duration, 4 * 18.0 / quick_options().limits.speed);
+}
+
+TEST(FollowVertices, NamesTheLegsThatViolateTheClearance) {
+  std::vector<Vertex> vertices(4);
+  vertices[0].position = {-20, -20, 0};
+  vertices[1].position = {20, -20, 0};
+  vertices[2].position = {-20, 20, 0};  // through the cube
+  vertices[3].position = {-40, 20, 0};
+  const GivenPlan given = follow_vertices(quick_options(), cube_site(), vertices, {});
+  ASSERT_EQ(given.problems.size(), 1U);
+  EXPECT_EQ(given.problems[0].leg, 1U);
+  EXPECT_THAT(given.problems[0].what, testing::HasSubstr(" m from the nearest obstacle at ("));
+}
+
+TEST(FollowVertices, RejectsHeightsAndPitchesOutsideTheLimits) {
+  InspectionSite site = cube_site();
+  site.max_height = 9.0;
+  InspectionOptions options = quick_options();
+  options.pitch.max = 0.5;
+  std::vector<Vertex> vertices(3);
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    vertices[i].position = {-20.0 + 20.0 * static_cast<double>(i), -20, 5};
+  }
+  vertices[1].pitch = 1.0;
+  vertices[2].position.z() = 10;
+  const GivenPlan given = follow_vertices(options, site, vertices, {});
+  std::string all;
+  for (const LegProblem& problem : given.problems) all += problem.what + "\n";
+  EXPECT_THAT(all, testing::HasSubstr("height 10 m is above the maximum of 9 m"));
+  EXPECT_THAT(all, testing::HasSubstr("the gimbal pitch is outside of "));
+  EXPECT_THROW(follow_vertices(options, site, {vertices[0]}, {}), Error);
+}
+
 TEST(PlanInspection, StopsOnRequest) {
   std::stop_source source;
   source.request_stop();

@@ -1,10 +1,15 @@
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "flight/export/text.h"
+#include "geometry/angle.h"
 #include "missions/config/resolve.h"
 #include "missions/package/fleet/timetable_verification.h"
 #include "missions/package/settings.h"
@@ -197,6 +202,77 @@ TEST(Fleet, ReassignsViewsOfLostVehicle) {
   EXPECT_THAT(export_rest({"--lost", "2"}).err, HasSubstr("requires --out"));
   EXPECT_THAT(export_rest({"--lost", "3", "--out", package() / "none"}).err, HasSubstr("--lost 3"));
   EXPECT_THAT(export_rest({"--after", "3"}).err, HasSubstr("requires --lost"));
+}
+
+/// Views of each vehicle of the package as lines of a waypoint table.
+std::vector<std::string> fleet_lines(bool has_vehicles) {
+  const json summary = json::parse(read_content(package() / "out/summary.json"));
+  std::vector<std::string> lines;
+  std::size_t number = 0;
+  for (const json& vehicle : summary["flight"]["fleet"]["vehicles"]) {
+    ++number;
+    for (const std::size_t view : vehicle["order"]) {
+      const json& at = summary["per_view"][view];
+      const std::vector<double> place = at["position"], direction = at["direction"];
+      std::string line;
+      for (const double value : place) line += flight::fixed(value, 6) + ",";
+      line +=
+          flight::fixed(geometry::degrees_per_radian * std::atan2(direction[0], direction[1]), 6);
+      line += "," + flight::fixed(geometry::degrees_per_radian * std::asin(direction[2]), 6) + ",1";
+      lines.push_back(has_vehicles ? line + "," + std::to_string(number) : line);
+    }
+  }
+  return lines;
+}
+
+auto export_fleet(const std::vector<std::string>& lines, bool has_vehicles,
+                  const std::string& out) {
+  std::string text = "x,y,z,heading_deg,gimbal_pitch_deg,photos";
+  text += has_vehicles ? ",vehicle\n" : "\n";
+  for (const std::string& line : lines) text += line + "\n";
+  return run_skycap({"export", package() / "out", "--route", package().write("edited.csv", text),
+                     "--out", package() / out});
+}
+
+TEST(FleetRoute, FliesTheViewsOfEachVehicleAndKeepsTheSeparation) {
+  const auto run = export_fleet(fleet_lines(true), true, "edited");
+  ASSERT_EQ(run.exit_code, 0) << run.out << run.err;
+  const json fleet = fleet_summary();
+  for (std::size_t v = 0; v < 2; ++v) {
+    EXPECT_THAT(run.out,
+                HasSubstr("vehicle " + std::to_string(v + 1) + " " +
+                          (v == 0 ? "generic, " : "generic_ardupilot, ") +
+                          std::to_string(fleet["vehicles"][v]["order"].size()) + " waypoint"));
+  }
+  EXPECT_THAT(run.out, HasSubstr("  separation minimum "));
+  const auto verification = check(package() / "edited/timetable.csv");
+  EXPECT_EQ(verification.exit_code, 0) << verification.out << verification.err;
+}
+
+TEST(FleetRoute, DividesViewsWithoutVehicles) {
+  const auto run = export_fleet(fleet_lines(false), false, "divided");
+  EXPECT_EQ(run.exit_code, 0) << run.out << run.err;
+  EXPECT_EQ(check(package() / "divided/timetable.csv").exit_code, 0);
+}
+
+TEST(FleetRoute, NamesTheViewThatAVehicleCannotReach) {
+  std::vector<std::string> lines = fleet_lines(true);
+  const std::size_t comma = lines[1].find(',', lines[1].find(',') + 1);
+  lines[1] = "0,0" + lines[1].substr(comma);  // inside the object
+  const auto run = export_fleet(lines, true, "blocked");
+  EXPECT_EQ(run.exit_code, 1) << run.out << run.err;
+  EXPECT_THAT(run.out, HasSubstr("edited.csv: waypoint line 3 of vehicle 1: "));
+  EXPECT_FALSE(std::filesystem::exists(package() / "blocked"));
+}
+
+TEST(FleetRoute, RejectsUnknownVehiclesAndMissionsWithoutResults) {
+  std::vector<std::string> lines = fleet_lines(true);
+  lines[0].back() = '3';
+  EXPECT_THAT(export_fleet(lines, true, "none").err,
+              HasSubstr("line 2: vehicle 3 is unknown; the fleet has 2 vehicles"));
+  const auto run = run_skycap({"export", package() / "m.yaml", "--route", package() / "edited.csv",
+                               "--out", package() / "none"});
+  EXPECT_THAT(run.err, HasSubstr("requires the results folder of plan"));
 }
 
 // A list of one vehicle gives the same settings, survey and files as the single vehicle.
