@@ -388,6 +388,9 @@ void add_view(CLI::App& app, const Console& console, Action& action) {
           "Results folder, point cloud (.ply, .pcd, .las, .laz, .e57, .xyz), or mission file")
       ->required();
   command->add_option("--out", options->out, "HTML file (default: next to the input)");
+  command->add_option("--background", options->background,
+                      "Orthophoto or map as the ground of the 3-D view of a mission or of results "
+                      "(GeoTIFF, JPEG 2000)");
   add_set_option(*command, *keys);
   run_with_keys(*command, options, keys, view, console, action);
 }

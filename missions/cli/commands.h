@@ -282,8 +282,10 @@ struct ReportOptions {
 int report_results(const ReportOptions& options, const Console& console);
 
 struct ViewOptions {
-  std::filesystem::path what;                  ///< results folder, cloud or mission file
-  std::optional<std::filesystem::path> out;    ///< HTML file; default: in the folder of `what`
+  std::filesystem::path what;                ///< results folder, cloud or mission file
+  std::optional<std::filesystem::path> out;  ///< HTML file; default: in the folder of `what`
+  /// Georeferenced image of the site, for missions and results.
+  std::optional<std::filesystem::path> background;
   std::vector<config::KeyOverride> overrides;  ///< key overrides for a mission file
 };
 

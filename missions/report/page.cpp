@@ -32,6 +32,9 @@ std::string data_block(std::string_view type, const std::string& id, std::string
   return block + "</script>\n";
 }
 
+/// Beginning of the element with the input of page/main.js.
+constexpr std::string_view data_begin = R"(<script type="application/json" id="data">)";
+
 /// Returns a compressed library. Uncompressed, libraries are a third of the report.
 std::string library_block(const PageLibrary& library) {
   return data_block("application/octet-stream", "library-" + std::string(library.name),
@@ -91,6 +94,19 @@ std::string page_text(const std::string& title, Json data, const std::vector<Pag
     }
     if (name == "script") page.append("<script>").append(page_script()).append("</script>");
     at = end + 2;
+  }
+  return page;
+}
+
+std::string with_background(std::string page, const std::string& name, std::string_view jpeg,
+                            const std::array<Eigen::Vector2d, 4>& corners) {
+  Json places = Json::array();
+  for (const Eigen::Vector2d& corner : corners) places.push_back({corner.x(), corner.y()});
+  const Json data{
+      {"name", name}, {"corners", places}, {"image", "data:image/jpeg;base64," + base64(jpeg)}};
+  const std::size_t at = page.find(data_begin);
+  if (at != std::string::npos) {
+    page.insert(at, data_block("application/json", "background", script_json(data)));
   }
   return page;
 }

@@ -5,9 +5,12 @@
 /// of resources.
 #pragma once
 
+#include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
 #include "missions/report/cloud_code.h"
@@ -24,5 +27,10 @@ struct PageCloud {
 /// deterministic.
 std::string page_text(const std::string& title, nlohmann::ordered_json data,
                       const std::vector<PageCloud>& clouds);
+
+/// Returns a report with an image of the site as the ground of its 3-D view. `corners` are those of
+/// the JPEG image in the mission frame [m]: top left, top right, bottom right and bottom left.
+std::string with_background(std::string page, const std::string& name, std::string_view jpeg,
+                            const std::array<Eigen::Vector2d, 4>& corners);
 
 }  // namespace skycap::missions::report

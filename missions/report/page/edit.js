@@ -4,7 +4,8 @@
 //     from the studio  {objects: [{id, name, role, shape, points, bottom, top, direction, is_fixed}],
 //                       hidden: [layers and roles of volumes], tool: true or false,
 //                       survey: Float32Array with the points measured so far,
-//                       shows_view: true to scroll to the 3-D view}
+//                       shows_view: true to scroll to the 3-D view,
+//                       fits: true to show all objects that can be moved}
 //     to the studio    {ready: {ground, pad}}, {placed: [x, y, z]}, {moved: {id, points, is_over}},
 //                      {selected: id}
 //
@@ -37,7 +38,7 @@ class Editor {
 
   tell(message) { parent.postMessage(message, "*"); }
 
-  hear({ objects, hidden, tool, survey, shows_view: shows }) {
+  hear({ objects, hidden, tool, survey, shows_view: shows, fits }) {
     if (shows) this.panel.stage.scrollIntoView({ block: "start" });
     if (Array.isArray(hidden)) this.hide(hidden);
     if (survey instanceof Float32Array) this.show_survey(survey);
@@ -47,6 +48,7 @@ class Editor {
       this.objects = objects.map((one) => (dragged && one.id === dragged.id ? dragged : one));
       this.show();
     }
+    if (fits) this.fit();
     if (tool !== undefined) {
       this.has_tool = !!tool;
       this.panel.stage.classList.toggle("measuring", this.has_tool);
@@ -61,6 +63,12 @@ class Editor {
     if (viewer.layers.measured) viewer.layers.measured.visible = !this.survey;
     if (this.survey) viewer.add_cloud("survey", { count, of: count, positions, spacing: spacing_of(positions) }, survey_colour);
     viewer.draw_soon();
+  }
+
+  /// Moves the camera so that all objects with handles are seen.
+  fit() {
+    this.handles.forEach(({ place }) => this.viewer.extent.core.expandByPoint(place));
+    this.viewer.look("overview", false);
   }
 
   hide(names) {

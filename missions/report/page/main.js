@@ -1,7 +1,9 @@
 // Assembles the page.
 
 function read_data() {
-  return JSON.parse(document.getElementById("data").textContent);
+  const background = document.getElementById("background");
+  return { ...JSON.parse(document.getElementById("data").textContent),
+    background: background ? JSON.parse(background.textContent) : null };
 }
 
 /// Loads a deflated library. The content security policy contains the hash of its text.

@@ -2,7 +2,7 @@
 
 const layer_names = {
   measured: "points", missing: "missing", unreachable: "unreachable", route: "route", fleet: "fleet", clearance: "clearance", views: "views", next: "next view",
-  free: "free-space boundary", volumes: "volumes", priors: "prior data", ground: "ground",
+  free: "free-space boundary", volumes: "volumes", priors: "prior data", ground: "ground", background: "background",
 };
 
 /// Returns the box of the scene to survey, or null.
@@ -281,6 +281,22 @@ function free_group(cloud) {
   return group;
 }
 
+/// Returns the image of the site, drawn flat at the height of the ground. `on_load` is called when it can be drawn.
+function background_image({ corners, image, name }, height, on_load) {
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.Float32BufferAttribute(corners.flatMap(([x, y]) => [x, y, height]), 3));
+  geometry.setAttribute("uv", new THREE.Float32BufferAttribute([0, 1, 1, 1, 1, 0, 0, 0], 2));
+  geometry.setIndex([0, 3, 2, 0, 2, 1]);
+  const material = new THREE.MeshBasicMaterial({ side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 2 });
+  const mesh = new THREE.Mesh(geometry, material);
+  mesh.name = name;
+  material.map = new THREE.TextureLoader().load(image, () => {
+    mesh.userData.is_loaded = true;
+    on_load();
+  });
+  return mesh;
+}
+
 function build_layers(data, clouds) {
   const extent = extent_of(data, clouds);
   const size = extent.all.getSize(new THREE.Vector3()).length() || 1;
@@ -298,6 +314,10 @@ function build_layers(data, clouds) {
   add("volumes", volume_group(data, extent));
   add("priors", prior_group(data));
   layers.ground = ground_grid(extent, data.scene ? data.scene.ground : extent.all.min.z);
+  if (data.background) {
+    layers.background = background_image(data.background, data.scene ? data.scene.ground : extent.all.min.z,
+      () => { if (data.on_background) data.on_background(); });
+  }
   // The flight of a fleet is shown instead of the same flight by one vehicle.
   for (const name of layers.fleet ? ["route", "clearance", "free"] : ["clearance", "free"]) {
     if (layers[name]) layers[name].visible = false;

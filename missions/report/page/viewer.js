@@ -25,6 +25,7 @@ class Viewer {
     if (!context) throw new Error("this browser does not support 3-D graphics (WebGL 2)");
     this.renderer = new THREE.WebGLRenderer({ canvas, context });
     this.renderer.autoClear = false;
+    data.on_background = () => this.draw_soon();
     Object.assign(this, build_layers(data, clouds));
     this.cloud_layers = Object.entries(this.layers).filter(([, layer]) => layer.userData.cloud);
     this.camera = new THREE.PerspectiveCamera(45, 1, this.size / 1000, this.size * 12);

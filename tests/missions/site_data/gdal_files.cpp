@@ -116,4 +116,17 @@ void write_raster(const std::filesystem::path& file, const WrittenRaster& raster
   }
 }
 
+void write_image(const std::filesystem::path& file, const WrittenImage& image) {
+  constexpr int side = 100;
+  const GDALDataType type = image.has_16_bits ? GDT_UInt16 : GDT_Byte;
+  const Dataset dataset(
+      driver_named("GTiff").Create(file.c_str(), side, side, image.bands, type, nullptr));
+  if (!dataset) throw std::runtime_error(file.string() + " cannot be made");
+  std::array<double, 6> affine{500005.0 - side / 2, 1, 0, 5315995.0 + side / 2, 0, -1};
+  if (image.has_position) dataset->SetGeoTransform(affine.data());
+  const OGRSpatialReference system = make_reference_system(25832);
+  if (image.has_crs) dataset->SetSpatialRef(&system);
+  for (int i = 1; i <= image.bands; ++i) dataset->GetRasterBand(i)->Fill(200.0 / i);
+}
+
 }  // namespace skycap::testing_support

@@ -36,4 +36,13 @@ struct WrittenRaster {
 };
 void write_raster(const std::filesystem::path& file, const WrittenRaster& raster);
 
+/// GeoTIFF of 100 x 100 pixels of 1 m, whose centre is at (500005, 5315995) in EPSG:25832.
+struct WrittenImage {
+  int bands = 3;
+  bool has_16_bits = false;
+  bool has_crs = true;
+  bool has_position = true;
+};
+void write_image(const std::filesystem::path& file, const WrittenImage& image);
+
 }  // namespace skycap::testing_support
