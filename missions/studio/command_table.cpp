@@ -71,7 +71,7 @@ constexpr std::array commands{
               {"--simplify", text},
               {"--repair", flag}}}},
     Command{"fly-test", {{{"package", path}, {"--flights", text}}}},
-    Command{"view", {{{"what", path}, {"--out", path}}}},
+    Command{"view", {{{"what", path}, {"--out", path}, {"--background", path}}}},
     Command{"presets", {{{"--json", flag}}}}};
 
 /// Variants of a mission. Other keys are set in the mission file, where the user sees them.

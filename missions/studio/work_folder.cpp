@@ -21,13 +21,13 @@ constexpr int max_depth = 4;
 
 struct Kind {
   std::string_view name;
-  std::array<std::string_view, 12> extensions;
+  std::array<std::string_view, 13> extensions;
 };
 constexpr std::array kinds{
     Kind{"mission", {".yaml", ".yml"}},
     Kind{"map",
          {".gml", ".citygml", ".xml", ".json", ".geojson", ".kml", ".gpkg", ".shp", ".osm", ".dxf",
-          ".tif"}},
+          ".tif", ".tiff", ".jp2"}},
     Kind{"model",
          {".obj", ".ply", ".stl", ".off", ".glb", ".gltf", ".dae", ".fbx", ".ifc", ".3ds"}},
     Kind{"cloud", {".las", ".laz", ".e57", ".pcd", ".xyz"}}};

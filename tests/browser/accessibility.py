@@ -22,8 +22,9 @@ all(controls).forEach((node) => {
     ...labels, node.title, ["A", "BUTTON", "SUMMARY"].includes(node.tagName) ? node.textContent : ""];
   if (!texts.some((text) => text && text.trim())) add("name", node);
   const visible = node.textContent.trim(), name = node.getAttribute("aria-label");
-  if (name && ["A", "BUTTON"].includes(node.tagName) && visible && !name.toLowerCase().includes(visible.toLowerCase())) {
-    add("label in name", node, visible);  // 2.5.3
+  const shown_name = (["A", "BUTTON"].includes(node.tagName) ? visible : labels.map((label) => label.trim()).join(" "));
+  if (name && shown_name && !name.toLowerCase().includes(shown_name.toLowerCase())) {
+    add("label in name", node, shown_name);  // 2.5.3
   }
   for (const attribute of ["aria-labelledby", "aria-describedby", "aria-controls"]) {
     for (const id of (node.getAttribute(attribute) || "").split(" ").filter(Boolean)) {

@@ -3,6 +3,13 @@
 const kind_texts = { mission: "mission", map: "map, tile or terrain", model: "model or mesh", cloud: "point cloud",
   package: "results", live: "live survey" };
 
+/// Select of an image of the site for 3-D views, and the options of skycap view with it.
+function background_select() {
+  const node = select([]);
+  return { node, refresh: () => fill(node, files_of("map").map((file) => file.path).filter((name) => /\.(tiff?|jp2)$/i.test(name)), "none"),
+    options: () => (node.value ? { "--background": node.value } : {}) };
+}
+
 /// Opens a file in the step for its kind.
 async function open_file(file) {
   if (file.kind === "mission") {

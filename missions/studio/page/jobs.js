@@ -2,8 +2,18 @@
 
 const jobs = new Map();
 
+/// Returns the remaining time of a command from its last progress line, such as "view 3 of at most 20" or "40%".
+function remaining_text({ lines = [], seconds }) {
+  const line = [...lines].reverse().find((one) => /^\[\d+ s\] .*?(\d+ of (at most )?\d+|\d+%)/.test(one)) || "";
+  const [, done, most, all] = /(\d+) of (at most )?(\d+)/.exec(line) || [];
+  const [, percent] = /(\d+)%/.exec(line) || [];
+  const share = all ? done / all : percent / 100;
+  if (!(share > 0 && share < 1)) return "";
+  return (most ? ", at most about " : ", about ") + Math.ceil(seconds * (1 - share) / share) + " s left";
+}
+
 function state_text(job) {
-  if (job.running) return "running, " + Math.round(job.seconds) + " s";
+  if (job.running) return "running, " + Math.round(job.seconds) + " s" + remaining_text(job);
   const texts = { 0: "finished", 1: "finished with a negative result (exit code 1)", 2: "not possible (exit code 2)" };
   return (texts[job.exit_code] || "ended with exit code " + job.exit_code) + ", " + job.seconds.toFixed(1) + " s";
 }

@@ -28,11 +28,11 @@ studio.steps.live = {
     this.stage = make_stage("3-D view of the live survey", {});
     this.state = element("p", { role: "status", id: "live-state" });
     this.rows = element("tbody");
+    this.table = element("table", { hidden: true }, this.rows);
     this.hold = button("Hold", () => this.request_hold(true), { class: "main", id: "hold" });
     this.resume = button("Resume", () => this.request_hold(false), { id: "resume" });
     this.figures = element("div", { hidden: true }, element("div", { class: "actions" }, this.hold, this.resume), this.state,
-      element("table", {}, this.rows),
-      element("p", { class: "note" }, "Hold: no further leg is released. With skycap fly, the vehicle stops on its leg; with skycap serve, " +
+      this.table, element("p", { class: "note" }, "Hold: no further leg is released. With skycap fly, the vehicle stops on its leg; with skycap serve, " +
         "the client waits for its next view. Returns of failsafes are not held. The pilot can take control at any time."));
     section.append(element("h2", {}, "Live"), element("div", { class: "fields" }, field("Live survey", this.survey,
       "Surveys of skycap serve and skycap fly in this folder. They are started on the command line.")),
@@ -83,6 +83,7 @@ studio.steps.live = {
     this.state.dataset.state = !running ? "ended" : is_held ? "held" : "running";
     const figures = running ? live_figures(status) : [];
     this.rows.replaceChildren(...figures.map(([name, text]) => element("tr", {}, element("th", { scope: "row" }, name), element("td", {}, text))));
+    this.table.hidden = !running;
     this.update_buttons();
     this.draw(running ? status : {});
   },

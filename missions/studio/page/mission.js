@@ -38,15 +38,18 @@ studio.steps.mission = {
     this.output = make_output("Output of the command");
     this.history = make_history(() => this.text, (text) => this.in_turn(() => this.set_text(text)));
     this.checked = element("p", { role: "status", id: "checked" });
+    this.estimate = element("ul", { id: "estimate" });
     this.draw = make_draw(this);
     this.variants = make_variants(this);
-    section.append(element("h2", {}, "Mission"), element("div", { class: "fields" }, field("Mission file", this.file)),
+    this.background = background_select();
+    section.append(element("h2", {}, "Mission"), element("div", { class: "fields" }, field("Mission file", this.file),
+      field("Background", this.background.node, "Orthophoto or map of the site for the 3-D view (GeoTIFF).")),
       element("div", { class: "actions" }, button("Check", () => this.check(), { id: "check" }),
         button("Save", () => this.save(), { id: "save" }), button("Show in 3-D", () => this.view()),
         button("Plan", () => this.plan(), { class: "main", id: "plan" }),
         button("Resume", () => this.plan(true)), button("Simulate the scan", () => this.scan()),
         this.history.undo, this.history.redo, this.is_saved),
-      this.problem, this.conflict, this.checked, this.output.box, this.draw.box, this.variants.box,
+      this.problem, this.conflict, this.checked, this.estimate, this.output.box, this.draw.box, this.variants.box,
       element("div", { class: "columns" }, this.form, this.area));
     // The file may be changed by other programs at any time.
     setInterval(() => { if (!document.hidden) this.compare_with_disk().catch(() => {}); }, 2000);
@@ -55,6 +58,7 @@ studio.steps.mission = {
   refresh() {
     fill(this.file, files_of("mission").map((file) => file.path), "choose a mission");
     if (this.path) this.file.value = this.path;
+    this.background.refresh();
     this.variants.refresh().catch((failure) => say(failure.message));
   },
   is_changed() { return this.path !== "" && this.text !== this.saved; },
@@ -128,6 +132,7 @@ studio.steps.mission = {
     clearTimeout(this.timer);
     if (!this.is_changed()) {
       this.checked.textContent = "";
+      this.estimate.replaceChildren();
       return;
     }
     this.timer = setTimeout(() => this.check_now().catch((failure) => { this.checked.textContent = failure.message; }), 700);
@@ -143,6 +148,10 @@ studio.steps.mission = {
       const problem = job.lines.find((line) => line.includes("error")) || job.lines.at(-1) || "";
       this.checked.textContent = job.exit_code === 0 ? "Check passed." : problem;
       this.checked.className = job.exit_code === 0 ? "good" : "bad";
+      // Views or photos, minutes, batteries, memory, and warnings with their remedies.
+      const facts = job.lines.filter((line) => /^ {2}\S/.test(line) || /warning: /i.test(line));
+      this.estimate.replaceChildren(...(job.exit_code === 0 ? facts : []).map((line) =>
+        element("li", { class: /warning: /i.test(line) ? "bad" : null }, line.trim().replace(/ {2,}/, ": "))));
     } finally {
       this.is_checking = false;
       if (text !== this.text) this.check_soon();
@@ -230,7 +239,7 @@ studio.steps.mission = {
   async view() {
     await this.save_if_changed();
     const page = this.path.replace(/\.ya?ml$/, ".html");
-    const job = await run_command("view", { what: this.path, "--out": page });
+    const job = await run_command("view", { what: this.path, "--out": page, ...this.background.options() });
     if (job.exit_code !== 0) {
       this.output.show(job);
       return;

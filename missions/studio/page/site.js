@@ -51,6 +51,8 @@ studio.steps.site = {
     this.map.addEventListener("change", () => this.open(this.map.value).catch((failure) => say(failure.message)));
     this.target = text_input({ list: "objects" });
     this.objects = element("datalist", { id: "objects" });
+    this.more = [];  // further targets
+    this.more_box = element("div", { class: "actions" });
     this.inputs = { "--crs": text_input(), "--vertical": select([["", "as in the file"], "ellipsoid", "geoid"]),
       "--base": text_input(), "--height": text_input({ inputmode: "decimal" }), "--terrain": select([]),
       "--obstacle": select([]) };
@@ -73,7 +75,7 @@ studio.steps.site = {
     section.append(element("h2", {}, "Site"), element("div", { class: "columns" },
       element("div", {}, element("div", { class: "fields" }, field("Map or model", this.map),
         field("Target", this.target, "Click it in the map, or enter its name. Empty: the whole model.")),
-      this.objects, location, this.choices,
+      this.objects, this.more_box, location, this.choices,
       element("div", { class: "fields" },
         field("Ground sampling distance [m]", this.gsd, "For photo cameras."),
         field("Take-off point [m]", this.takeoff, "In the mission frame. Empty: proposed by Skycap."),
@@ -94,12 +96,23 @@ studio.steps.site = {
     const { object, objects } = event.data;
     if (typeof object === "string") {
       this.target.value = object;
-      if (!this.is_named) this.out.value = free_name(stem_of(object), ".yaml");
+      if (!this.more.length) this.out.value = free_name(stem_of(object), ".yaml");
     }
     if (Array.isArray(objects)) {
       this.objects.replaceChildren(...objects.slice(0, 5000).map((name) => element("option", { value: String(name) })));
       this.picture.dataset.objects = objects.length;
     }
+  },
+  /// Shows the further targets, and a button that adds the one in the field to them.
+  set_more(names) {
+    this.more = names;
+    this.more_box.replaceChildren(button("Choose another target, too", () => {
+      const name = this.target.value.trim();
+      if (!name) throw new Error("Click the first target, or enter its name.");
+      this.target.value = "";
+      this.set_more([...names.filter((one) => one !== name), name]);
+    }, { id: "more-targets" }), ...names.map((name) => button("Remove " + name, () =>
+      this.set_more(names.filter((one) => one !== name)))));
   },
   is_model() {
     return studio.listing.some((file) => file.path === this.map.value && file.kind === "model");
@@ -113,6 +126,7 @@ studio.steps.site = {
     await load_presets();
     this.map.value = path;
     this.target.value = "";
+    this.set_more([]);
     this.out.value = free_name(stem_of(path), ".yaml");
     this.picture.hidden = true;
     this.next.hidden = true;
@@ -134,13 +148,13 @@ studio.steps.site = {
   async create() {
     await load_presets();
     const camera = studio.presets.photo_cameras.some((one) => one.name === this.sensor.value);
-    const shared = { "--out": this.out.value };
+    const shared = { "--out": this.out.value }, targets = [...new Set([...this.more, this.target.value.trim()])].filter(Boolean);
     if (this.sensor.value) shared["--sensor"] = this.sensor.value;
     if (this.vehicle.value) shared["--vehicle"] = this.vehicle.value;
     if (camera) shared["--gsd"] = this.gsd.value;
     const job = this.is_model()
       ? await run_command("init", { ...shared, target: this.map.value }, this.output.show)
-      : await run_command("site", { ...this.options(), ...shared, ...(this.target.value ? { "--id": [this.target.value] } : {}) },
+      : await run_command("site", { ...this.options(), ...shared, ...(targets.length ? { "--id": targets } : {}) },
         this.output.show);
     if (job.exit_code !== 0) {
       by_id("georeference").open = job.exit_code === 2;

@@ -23,6 +23,7 @@ function make_stage(title, listeners) {
         listeners.ready({ ground: Number.isFinite(ready.ground) ? ready.ground : 0, pad: is_place(ready.pad) ? ready.pad : null });
       }
       send({ objects: stage.objects, hidden: stage.hidden, tool: stage.has_tool, survey: stage.survey });
+      if (stage.has_fit) send({ fits: true });
       node.dataset.ready = "true";
     }
     if (is_place(placed) && listeners.placed) act(listeners.placed(placed));
@@ -34,7 +35,7 @@ function make_stage(title, listeners) {
   return Object.assign(stage, {
     /// Shows a page, with `scrolls` at its 3-D view.
     show(path, scrolls = false) {
-      Object.assign(stage, { path, is_ready: false, is_new: scrolls });
+      Object.assign(stage, { path, is_ready: false, is_new: scrolls, has_fit: false });
       delete node.dataset.ready;
       show_in(node, path);
     },
@@ -48,6 +49,11 @@ function make_stage(title, listeners) {
       stage.survey = survey;
       node.dataset.points = survey.length / 3;
       send({ survey });
+    },
+    /// Shows all objects that can be moved.
+    fit() {
+      stage.has_fit = true;
+      send({ fits: true });
     },
     use_tool(has_tool) {
       stage.has_tool = has_tool;

@@ -1,5 +1,5 @@
-// Edits the views of a planned flight: they are moved, added and removed, and the program verifies the
-// new route in the space of the results folder (skycap export --route).
+// Edits the views of a planned flight, also of a fleet, and the corners of an inspection flight: they are
+// moved, added and removed, and the program verifies the new flight (skycap export --route).
 
 /// Returns the views to which the legs of the flight refer: those of the survey, or the replanned ones.
 function planned_views(summary) {
@@ -7,27 +7,40 @@ function planned_views(summary) {
   return replanned && replanned.is_flown ? replanned.stations : summary.per_view || [];
 }
 
-/// Returns [{view, position, direction, via, from}] in flight order. `via` are the points of the leg to the
-/// view, and `from` is the view at which this leg begins.
+const header = "x,y,z,heading_deg,gimbal_pitch_deg,";
+
+/// Kinds of flights: words, additional fields, and the columns of the route.
+const flight_kinds = {
+  survey: { noun: "view", title: "Views", more: [], columns: header + "photos", end: () => "1", has_repair: true,
+    note: "" },
+  fleet: { noun: "view", title: "Views of all vehicles", more: ["vehicle"], columns: header + "photos,vehicle",
+    end: ({ vehicle }) => "1," + vehicle, has_repair: false,
+    note: " Legs are led round obstacles, take-offs are delayed until all distances between vehicles are verified." },
+  inspection: { noun: "corner", title: "Corners of the flight", more: ["delay"], columns: header + "delay_s",
+    end: ({ delay }) => delay.toFixed(6), has_repair: false,
+    note: " The flight rounds the corners. The delay slows the leg to the next corner." },
+};
+
+function flight_kind(summary) {
+  if (summary.kind === "inspection") return "inspection";
+  return ((summary.flight || {}).fleet || {}).vehicles ? "fleet" : "survey";
+}
+
+/// Returns [{view, position, direction, via, from}] in flight order, with the vehicle or the delay. `via` are the points of
+/// the leg to the view, and `from` is the view at which this leg begins.
 function flown_views(summary) {
-  if (summary.kind === "inspection") {
-    throw new Error("Inspection flights are continuous and cannot be edited view by view. Change the mission and plan again.");
+  const kind = flight_kind(summary);
+  if (kind === "inspection") {
+    return summary.inspection.vertices.map(({ position, yaw_deg: yaw, pitch_deg: pitch, delay_s: delay }, view) =>
+      ({ view, position, direction: direction_of(90 - yaw, pitch), via: [], from: null, delay }));
   }
-  if (((summary.flight || {}).fleet || {}).vehicles) {
-    throw new Error("Flights of several vehicles cannot be edited view by view. Set flight.vehicle instead of flight.vehicles and plan again.");
-  }
-  const planned = planned_views(summary);
-  const sorties = ((summary.flight || {}).route || {}).sorties || [];
-  if (!planned.length || !sorties.length || !sorties[0].legs) {
-    throw new Error("These results contain no views of a flight that can be edited.");
-  }
-  const views = [];
-  for (const leg of sorties.flatMap((sortie) => sortie.legs)) {
-    if (leg.to === null || leg.to === undefined) continue;
-    const { position, direction } = planned[leg.to];
-    views.push({ view: leg.to, position, direction, via: leg.points.slice(1, -1), from: leg.from ?? null });
-  }
-  return views;
+  const { route, fleet } = summary.flight || {}, planned = planned_views(summary);
+  const flights = kind === "fleet" ? fleet.vehicles : [route || {}];
+  const legs = flights.flatMap(({ sorties }, i) => (sorties || []).flatMap((sortie) => sortie.legs || [])
+    .map((leg) => ({ ...leg, vehicle: i + 1 }))).filter(({ to }) => planned[to]);
+  if (!legs.length) throw new Error("These results contain no views of a flight that can be edited.");
+  return legs.map(({ to, from, points, vehicle }) => ({ view: to, position: planned[to].position, direction: planned[to].direction,
+    via: kind === "fleet" ? [] : points.slice(1, -1), from: from ?? null, vehicle }));
 }
 
 /// Returns the inner points of the leg to a view: those of the plan if both of its ends are unchanged.
@@ -37,18 +50,18 @@ function leg_points(views, i, original) {
   return is_same(view) && view.from === before && (i === 0 || is_same(views[i - 1])) ? view.via : [];
 }
 
-/// Returns the route as a waypoint table in the mission's frame, and what each line is.
-function route_text(views, original, names) {
-  const rows = ["x,y,z,heading_deg,gimbal_pitch_deg,photos"], lines = new Map();
-  const add = (place, direction, photos) => {
-    rows.push([...place, heading_of(direction), pitch_of(direction)].map((value) => value.toFixed(6)).join(",") + "," + photos);
+/// Returns the route as a table in the mission's frame, and what each line is.
+function route_text(views, original, names, kind) {
+  const rows = [flight_kinds[kind].columns], lines = new Map();
+  const add = (place, direction, end) => {
+    rows.push([...place, heading_of(direction), pitch_of(direction)].map((value) => value.toFixed(6)).join(",") + "," + end);
   };
   views.forEach((view, i) => {
     for (const place of leg_points(views, i, original)) {
-      add(place, view.direction, 0);
-      lines.set("line " + rows.length, "corner before " + names[i]);
+      add(place, view.direction, "0");
+      lines.set("line " + rows.length, "point before " + names[i]);
     }
-    add(view.position, view.direction, 1);
+    add(view.position, view.direction, flight_kinds[kind].end(view));
     lines.set("line " + rows.length, names[i]);
   });
   return { text: rows.join("\n") + "\n", lines };
@@ -64,27 +77,39 @@ function direction_of(heading, pitch) {
 
 /// `stage` shows the report of the results folder that `folder()` returns.
 function make_view_editor(stage, folder) {
-  const editor = { views: [], original: [], selected: 0, folder: "" };
+  const editor = { views: [], original: [], selected: 0, folder: "", kind: "survey" };
   const history = make_history(() => editor.views, (views) => editor.set(views, true));
   const list = element("select", { size: "6", id: "views", "aria-label": "Views in flight order" });
   list.addEventListener("change", () => editor.select(list.selectedIndex));
-  const names = ["x", "y", "z", "heading", "pitch"];
-  const inputs = names.map((name) => number_input("View " + name, null, (value) => editor.enter(name, value), { "data-name": name }));
+  const names = ["x", "y", "z", "heading", "pitch", "vehicle", "delay"];
+  const labels = { x: "x [m]", y: "y [m]", z: "z [m]", heading: "Heading [°]", pitch: "Gimbal pitch [°]", vehicle: "Vehicle",
+    delay: "Delay [s]" };
+  const inputs = names.map((name) => number_input("View: " + labels[name], null, (value) => editor.enter(name, value), { "data-name": name }));
+  const rows = names.map((name, i) => element("div", { class: "fields" }, field(labels[name], inputs[i])));
   const repairs = element("input", { type: "checkbox", id: "repair" });
-  const verdict = element("p", { role: "status", id: "verdict" });
+  const repair_label = element("label", {}, repairs, " Lead legs round obstacles");
+  const verdict = element("div", { role: "status", id: "verdict" });
+  const show_verdict = (text, is_good, figures = []) => verdict.replaceChildren(
+    element("p", { class: is_good === null ? null : is_good ? "good" : "bad" }, text),
+    ...(figures.length ? [element("ul", {}, figures.map((one) => element("li", {}, one)))] : []));
   const output = make_output("Output of the verification");
   const files = element("p", { class: "actions" });
-  editor.box = element("div", { hidden: true, id: "view-editor" },
-    element("h3", {}, "Views"),
-    element("p", { class: "note" }, "Drag a view in the 3-D view, with Shift vertically, or enter numbers: metres in the mission frame and degrees."),
-    element("div", { class: "actions" }, button("Verify", () => editor.verify(), { class: "main", id: "verify" }),
-      element("label", {}, repairs, " Lead legs round obstacles")),
-    verdict, files, list,
-    element("div", { class: "fields" }, names.flatMap((name, i) => field({ x: "x [m]", y: "y [m]", z: "z [m]", heading: "Heading [°]",
-      pitch: "Gimbal pitch [°]" }[name], inputs[i]))),
-    element("div", { class: "actions" }, button("Add a view after it", () => editor.add(), { id: "add-view" }),
-      button("Remove the view", () => editor.remove(), { id: "remove-view" }), history.undo, history.redo),
-    output.box);
+  const title = element("h3", {}), note = element("p", { class: "note" });
+  const add = button("", () => editor.add(), { id: "add-view" }), remove = button("", () => editor.remove(), { id: "remove-view" });
+  editor.box = element("div", { hidden: true, id: "view-editor" }, title, note,
+    element("div", { class: "actions" }, button("Verify", () => editor.verify(), { class: "main", id: "verify" }), repair_label),
+    verdict, files, list, rows, element("div", { class: "actions" }, add, remove, history.undo, history.redo), output.box);
+  const start = (kind) => {
+    const { noun, more, has_repair } = flight_kinds[kind];
+    editor.kind = kind;
+    title.textContent = flight_kinds[kind].title;
+    note.textContent = "Drag a " + noun + " in the 3-D view, with Shift vertically, or enter numbers: metres in the mission frame and degrees." +
+      flight_kinds[kind].note;
+    add.textContent = "Add a " + noun + " after it";
+    remove.textContent = "Remove the " + noun;
+    repair_label.hidden = !has_repair;
+    rows.slice(5).forEach((row, i) => { row.hidden = !more.includes(names[5 + i]); });
+  };
 
   const changed = (change) => editor.set(editor.views.with(editor.selected, { ...editor.views[editor.selected], ...change }));
   Object.assign(editor, {
@@ -93,10 +118,12 @@ function make_view_editor(stage, folder) {
       const answer = await fetch(file_address(editor.folder + "/summary.json"));
       if (!answer.ok) throw new Error(editor.folder + " contains no summary.json");
       const summary = await answer.json();
+      start(flight_kind(summary));
       editor.original = planned_views(summary);
+      editor.vehicles = editor.kind === "fleet" ? summary.flight.fleet.vehicles.length : 1;
       editor.set(flown_views(summary), true);
       history.clear();
-      verdict.textContent = "";
+      verdict.replaceChildren();
       files.replaceChildren();
       output.box.hidden = true;
       editor.box.hidden = false;
@@ -109,22 +136,27 @@ function make_view_editor(stage, folder) {
     set(views, is_step) {
       if (!is_step) history.add(editor.views);
       editor.views = views;
-      verdict.textContent = history.past.length ? "Changed; not verified." : "";
-      verdict.className = "";
-      list.replaceChildren(...views.map(({ view }, i) => element("option", {}, (i + 1) + ": " + (view === null ? "new view" : "view " + view))));
+      if (history.past.length) show_verdict("Changed; not verified.", null);
+      else verdict.replaceChildren();
+      delete verdict.dataset.exit;
+      const { noun } = flight_kinds[editor.kind];
+      list.replaceChildren(...views.map(({ view, vehicle }, i) => element("option", {}, (i + 1) + ": " +
+        (view === null ? "new " + noun : noun + " " + view) + (editor.kind === "fleet" ? ", vehicle " + vehicle : ""))));
       editor.select(Math.min(editor.selected, views.length - 1));
     },
     select(index) {
       editor.selected = index;
       list.selectedIndex = index;
-      const { position, direction } = editor.views[index];
-      const values = [...position, heading_of(direction), pitch_of(direction)];
+      const { position, direction, vehicle, delay } = editor.views[index];
+      const values = [...position, heading_of(direction), pitch_of(direction), vehicle || 0, delay || 0];
       inputs.forEach((input, i) => { input.value = Math.round(100 * values[i]) / 100; });
       editor.draw();
     },
     draw() {
-      const path = editor.views.flatMap((view, i) => [...leg_points(editor.views, i, editor.original), view.position]);
-      stage.set([{ id: "path", role: "line", shape: "line", points: path, is_fixed: true },
+      const paths = new Map();
+      editor.views.forEach((view, i) => paths.set(view.vehicle, [...(paths.get(view.vehicle) || []),
+        ...leg_points(editor.views, i, editor.original), view.position]));
+      stage.set([...[...paths].map(([vehicle, points]) => ({ id: "path" + vehicle, role: "line", shape: "line", points, is_fixed: true })),
         ...editor.views.map((view, i) => ({ id: String(i), role: "view", shape: "view", points: [view.position],
           direction: view.direction, is_selected: i === editor.selected, name: i === editor.selected ? list.value : "" }))],
       ["views", "route", "clearance", "fleet"]);
@@ -132,9 +164,24 @@ function make_view_editor(stage, folder) {
     enter(name, value) {
       if (value === null) throw new Error("View " + name + " requires a number");
       const { position, direction } = editor.views[editor.selected], axis = names.indexOf(name);
+      if (name === "vehicle") return editor.assign(value);
+      if (name === "delay") {
+        if (value < 0) throw new Error("The delay must not be negative.");
+        return changed({ delay: value });
+      }
       if (axis < 3) return changed({ position: position.with(axis, value) });
       const heading = name === "heading" ? value : heading_of(direction), pitch = name === "pitch" ? value : pitch_of(direction);
       return changed({ direction: direction_of(heading, Math.max(-90, Math.min(90, pitch))) });
+    },
+    /// Gives the view to another vehicle, after its other views.
+    assign(vehicle) {
+      if (!Number.isInteger(vehicle) || vehicle < 1 || vehicle > editor.vehicles) {
+        throw new Error("The vehicle must be a number from 1 to " + editor.vehicles + ".");
+      }
+      const view = { ...editor.views[editor.selected], vehicle }, rest = editor.views.toSpliced(editor.selected, 1);
+      const at = rest.findLastIndex((one) => one.vehicle <= vehicle) + 1;
+      editor.selected = at;
+      editor.set(rest.toSpliced(at, 0, view));
     },
     moved(id, [position], is_over) {
       const index = Number(id);
@@ -143,40 +190,48 @@ function make_view_editor(stage, folder) {
       if (is_over) changed({ position });
       else names.slice(0, 3).forEach((_, axis) => { inputs[axis].value = position[axis]; });
     },
-    /// Adds a view halfway to the next one, with the same direction.
+    /// Adds a view halfway to the next one of the same vehicle, with the same direction.
     add() {
-      const view = editor.views[editor.selected], next = editor.views[editor.selected + 1] || view;
+      const view = editor.views[editor.selected], after = editor.views[editor.selected + 1];
+      const next = after && after.vehicle === view.vehicle ? after : view;
       const position = view.position.map((value, axis) => Math.round(50 * (value + next.position[axis])) / 100);
-      const added = { view: null, position, direction: view.direction, via: [], from: null };
       editor.selected += 1;
-      editor.set(editor.views.toSpliced(editor.selected, 0, added));
+      editor.set(editor.views.toSpliced(editor.selected, 0, { ...view, view: null, position, via: [], from: null, delay: 0 }));
     },
     remove() {
-      if (editor.views.length < 2) throw new Error("A flight requires at least one view.");
+      const least = editor.kind === "inspection" ? 2 : 1;
+      if (editor.views.length <= least) throw new Error("A flight requires at least " + (least === 1 ? "one view." : "two corners."));
       editor.set(editor.views.toSpliced(editor.selected, 1));
     },
     async verify() {
       const started = performance.now(), view_names = [...list.options].map((one) => one.textContent);
-      const { text, lines } = route_text(editor.views, editor.original, view_names);
+      const { text, lines } = route_text(editor.views, editor.original, view_names, editor.kind);
       const name = stem_of(editor.folder) + ".edited.csv", out = editor.folder + "_edited";
       if (!await send_file(new File([text], name), editor.is_sent === name)) return;
       editor.is_sent = name;
       const job = await run_command("export", { package: editor.folder, "--route": name, "--out": out,
-        "--repair": repairs.checked }, output.show);
+        "--repair": repairs.checked && !repair_label.hidden }, output.show);
       const said = (line) => line.replace(name + ": ", "").replace(/line \d+/g, (one) => lines.get(one) || one);
-      const figures = job.lines.filter((line) => /^ {2}(flight|clearance|return|repaired|skipped) /.test(line)).map((line) => said(line.trim()));
+      const is_figure = (line) => /^ {2}(flight|clearance|return|repaired|skipped|slowed|coverage|vehicle|fleet|separation) /.test(line) ||
+        line.includes(": continuous flight of ") || /^Warning: .*(route files|attainable points)/.test(line);
+      const figures = job.lines.filter(is_figure).map((line) => said(line.trim().replace(/\.$/, "")));
       const seconds = ((performance.now() - started) / 1000).toFixed(1);
       const problem = job.lines.find((line) => line.includes(": leg ")) || job.lines.find((line) => line.startsWith(name + ":")) ||
         job.lines.find((line) => line.includes("error")) || "not verified";
-      verdict.textContent = job.exit_code === 0 ? "Verified in " + seconds + " s. " + figures.join(". ")
-        : "Not verified: " + said(problem) + " (" + seconds + " s)";
-      verdict.className = job.exit_code === 0 ? "good" : "bad";
+      if (job.exit_code === 0) show_verdict("Verified in " + seconds + " s.", true, figures);
+      else show_verdict("Not verified: " + said(problem) + " (" + seconds + " s)", false);
       verdict.dataset.seconds = seconds;
       verdict.dataset.exit = job.exit_code;
       files.replaceChildren();
       if (job.exit_code !== 0) return;
       const { files: written } = await request("package?path=" + encodeURIComponent(out));
-      files.replaceChildren(...written.map((file) => element("a", { class: "button",
+      if (written.some((file) => file.path === "report.html")) {
+        files.append(button("Open the new results", async () => {
+          await refresh_files();
+          await studio.steps.results.open(out);
+        }, { id: "open-edited" }));
+      }
+      files.append(...written.filter((file) => file.path !== "report.html").map((file) => element("a", { class: "button",
         href: file_address(out + "/" + file.path, "?download=1"), download: file.path }, "Download ", file.path)));
     },
   });
