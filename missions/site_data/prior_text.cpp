@@ -47,6 +47,7 @@ std::string format_priors(const Source& source, const Prior& prior) {
     }
     text += fmt::format("\n{}{:.1f} m from the site's origin, uncertainty {:.2f} m\n", indent,
                         prior.box.exteriorDistance(Eigen::Vector3d::Zero()), prior.uncertainty);
+    if (!prior.crs.empty()) text += fmt::format("{}coordinate system {}\n", indent, prior.crs);
   }
   if (prior.dropped_polygons > 0) {
     text += fmt::format("{}{} polygons without area ignored\n", indent, prior.dropped_polygons);

@@ -646,6 +646,10 @@ class StudioTest(unittest.TestCase):
         studio.picture("25_targets")
         studio.click("#create")
         studio.wait("#plan-now")
+        self.assertIn("coordinate system ETRS89 / UTM zone 32N", studio.wait("#site pre").text)
+        # The file names no vertical datum: the choice is shown with the program's warning.
+        self.assertTrue(studio.wait("#georeference").get_attribute("open"))
+        self.assertIn("missing vertical datum", studio.wait("#site pre").text)
         text = (self.folder / "house_0.yaml").read_text()
         self.assertIn("house_0", text)
         self.assertIn("house_2", text)

@@ -143,7 +143,13 @@ studio.steps.site = {
     this.map.value = path;
     if (job.exit_code === 1) show_in(this.picture, out.replace(/yaml$/, "objects.html"));
     if (job.exit_code === 0) await this.show_mission(out);  // one object: the mission is written
-    if (job.exit_code === 2) by_id("georeference").open = true;
+    this.ask_for_reference(job);
+  },
+  /// Opens the fields of the coordinate system and the heights if they are missing or assumed.
+  ask_for_reference({ exit_code: code, lines }) {
+    if (code === 2 || lines.some((line) => /missing (vertical datum|coordinate reference system)/.test(line))) {
+      by_id("georeference").open = true;
+    }
   },
   async create() {
     await load_presets();
@@ -156,10 +162,8 @@ studio.steps.site = {
       ? await run_command("init", { ...shared, target: this.map.value }, this.output.show)
       : await run_command("site", { ...this.options(), ...shared, ...(targets.length ? { "--id": targets } : {}) },
         this.output.show);
-    if (job.exit_code !== 0) {
-      by_id("georeference").open = job.exit_code === 2;
-      return;
-    }
+    this.ask_for_reference(job);
+    if (job.exit_code !== 0) return;
     await refresh_files();
     await this.show_mission(this.out.value);
   },
