@@ -92,20 +92,20 @@ std::string inspection_page(const ResultFinder& results, std::size_t max_points)
     }
     std::vector<CloudAttribute> attributes;
     if (!colours.empty()) attributes.push_back({"colour", colours});
-    const Json data = {
-        {"kind", "inspection"},
-        {"title", summary.value("mission", std::string())},
-        {"verdict", inspection_verdict(summary)},
-        {"summary", summary},
-        {"scene", scene_outline(summary, file.string())},
-        {"palette", palette},
-        {"piece", "image"},
-        {"pieces", pieces_json(results(poses_name))},
-        {"profile", profile_data(results)},
-        {"files", files_json({package::summary_name, "inspection.csv", "setpoints.enu.csv",
-                              "setpoints.ned.csv", poses_name, structure_name, "mission.kmz",
-                              "mission.plan", "mission.waypoints", package::profile_name},
-                             results)}};
+    const Json data = {{"kind", "inspection"},
+                       {"title", summary.value("mission", std::string())},
+                       {"verdict", inspection_verdict(summary)},
+                       {"summary", summary},
+                       {"scene", scene_outline(summary, file.string())},
+                       {"palette", palette},
+                       {"piece", "image"},
+                       {"pieces", pieces_json(results(poses_name))},
+                       {"profile", profile_data(results)},
+                       {"files", files_json({package::summary_name, "inspection.csv", "corners.csv",
+                                             "setpoints.enu.csv", "setpoints.ned.csv", poses_name,
+                                             structure_name, "mission.kmz", "mission.plan",
+                                             "mission.waypoints", package::profile_name},
+                                            results)}};
     return page_text(data.at("title"), data,
                      {{"measured", encode_cloud(structure.positions, attributes, max_points)}});
   } catch (const Json::exception& error) {
