@@ -242,7 +242,7 @@ int propose_site(const SiteOptions& options, const Console& console) {
 
 void add_site(CLI::App& app, const Console& console, Action& action) {
   CLI::App* command = app.add_subcommand(
-      "site", "Create a mission file from a map, city model, terrain model or point cloud");
+      "site", "Create a mission file from a map, city model or mesh, and its surroundings");
   const auto options = std::make_shared<SiteOptions>();
   command
       ->add_option("map", options->map,

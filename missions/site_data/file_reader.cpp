@@ -308,7 +308,8 @@ FileContents parsed(Opened opened, const Source& source, const SiteFrame& site) 
   const fs::path& file = source.file;
   const CloudDownsampling downsampling{
       source.spacing.value_or(usual_spacing), [&](const FileContents& header) {
-        return SiteTransform(source, header, site).metres_per_unit();
+        // A missing vertical datum is reported later, when it may have been set.
+        return SiteTransform(source, header, site, false).metres_per_unit();
       }};
   switch (opened.format) {
     case Format::citygml:

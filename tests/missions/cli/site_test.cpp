@@ -463,6 +463,21 @@ TEST_F(Site, KeepsPadClearOfTreeCrown) {
             mission().flight().clearance);
 }
 
+/// A target requires surfaces. The datum of --vertical is used before this is reported.
+TEST_F(Site, RejectsCloudsAsTargets) {
+  Cube cube;
+  cube.low = Vector3d(676330.0, 5403905.0, 385.0);
+  write("cloud.las", make_las(cube, 4, 6));
+  for (const std::string vertical : {"geoid", "ellipsoid"}) {
+    const tests::ProgramRun run =
+        tests::run_skycap({"site", path_ + "/cloud.las", "--crs", "EPSG:25832", "--vertical",
+                           vertical, "--out", path_ + "/house.yaml"});
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_THAT(run.err, HasSubstr("cloud.las: contains no object surfaces; a target requires "
+                                   "them. Reconstruct a mesh (skycap reconstruct)"));
+  }
+}
+
 // South of the houses, where pads are searched first, the terrain has a slope of 50%.
 TEST_F(Site, PutsPadOnLevelGround) {
   std::string grid =
