@@ -20,21 +20,34 @@ bool has_moved(const Vector3d& position, const Vector3d& from) {
   return std::abs(displacement.z()) > min_climb || displacement.head<2>().norm() > min_movement;
 }
 
+/// Speed above which a vehicle moves [m/s].
+constexpr double min_speed = 0.4;
+
+/// Returns the number of states before the first movement of a flight. States of the movement
+/// itself are kept, because a log may begin in the air.
+template <class Iterator>
+std::ptrdiff_t count_resting(Iterator begin, Iterator end) {
+  const Vector3d first = begin->position;
+  auto moved = std::find_if(
+      begin, end, [&](const TrackState& state) { return has_moved(state.position, first); });
+  if (moved == end) return 0;
+  const auto moves = [](const TrackState& a, const TrackState& b) {
+    const double duration = std::abs(b.time - a.time);
+    return duration <= min_log_gap && (b.position - a.position).norm() > min_speed * duration;
+  };
+  // The last state at rest is kept, too.
+  while (moved != begin && moves(*(moved - 1), *moved)) --moved;
+  if (moved != begin) --moved;
+  return moved - begin;
+}
+
 /// Removes the states on the ground.
 void trim(std::vector<TrackState>& states) {
-  const Vector3d first = states.front().position, last = states.back().position;
-  auto begin = std::ranges::find_if(
-      states, [&](const TrackState& state) { return has_moved(state.position, first); });
-  if (begin == states.end()) return;
-  // The vehicle leaves the ground shortly before it has moved by this distance.
-  if (begin != states.begin()) --begin;
-  auto end = std::find_if(states.rbegin(), states.rend(), [&](const TrackState& state) {
-               return has_moved(state.position, last);
-             }).base();
-  if (end != states.end()) ++end;
-  if (begin >= end) return;
-  states.erase(end, states.end());
-  states.erase(states.begin(), begin);
+  const std::ptrdiff_t before = count_resting(states.begin(), states.end());
+  const std::ptrdiff_t after = count_resting(states.rbegin(), states.rend());
+  if (before + after >= static_cast<std::ptrdiff_t>(states.size())) return;
+  states.erase(states.end() - after, states.end());
+  states.erase(states.begin(), states.begin() + before);
 }
 
 bool has_takeoff_heights(const FlownLog& log) {

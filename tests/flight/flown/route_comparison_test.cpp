@@ -140,6 +140,37 @@ TEST(RouteComparison, AcceptsLogsThatBeginInTheAir) {
   for (const LegComparison& leg : found.legs) EXPECT_TRUE(leg.is_flown);
 }
 
+/// Places a part of a flight as a log of its own.
+FlownTrack place_part(const std::vector<FlownState>& flight, std::size_t begin, std::size_t end) {
+  FlownLog log{.kind = "part", .is_local = true, .has_captures = true};
+  for (std::size_t i = begin; i < end; ++i) {
+    const TrackState& state = flight[i].state;
+    LoggedState logged{.time = state.time, .location = state.position};
+    logged.camera_yaw_deg = state.camera_yaw_deg;
+    logged.camera_pitch_deg = state.camera_pitch_deg;
+    log.states.push_back(logged);
+    if (flight[i].is_capture) log.captures.push_back(logged);
+  }
+  return place_track(log, {}, false, Vector3d::Zero(), TrackHeights::automatic);
+}
+
+/// A flight may be divided into two logs anywhere: during a leg, near a stop or at rest.
+TEST(RouteComparison, FindsTheLegInWhichTwoLogsMeet) {
+  const PlannedFlight plan = make_plan(stops());
+  const std::vector<FlownState> flight = fly_polyline(stops(), all_captures());
+  constexpr std::size_t at_least = 40, step = 3;  // both logs contain a movement
+  for (std::size_t cut = at_least; cut + at_least < flight.size(); cut += step) {
+    FlownTrack track;
+    append_track(track, place_part(flight, 0, cut));
+    append_track(track, place_part(flight, cut, flight.size()));
+    const RouteComparison found = compare_route(plan, track, {});
+    for (std::size_t i = 0; i < plan.legs.size(); ++i) {
+      EXPECT_TRUE(found.legs[i].is_flown) << "leg " << i << ", cut at state " << cut;
+    }
+    for (const CaptureComparison& capture : found.captures) EXPECT_TRUE(capture.is_made);
+  }
+}
+
 /// Both directions of the same path are different legs.
 TEST(RouteComparison, DistinguishesLegsOverTheSamePath) {
   const std::vector<Vector3d> points{{0, 0, 10}, {40, 0, 10}, {0, 0, 10}, {0, 30, 10}};
