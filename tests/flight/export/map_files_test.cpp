@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "flight/export/export.h"
 #include "flight/export/wpml_file.h"
 #include "geometry/error.h"
 #include "tests/flight/export/sample_plan.h"
@@ -246,6 +247,33 @@ TEST(Litchi, RejectsTooManyCapturesOrWaypoints) {
   plan.waypoints.resize(120, plan.waypoints[0]);
   EXPECT_THAT(testing_support::thrown_message([&] { write_litchi(plan); }),
               testing::HasSubstr("has 120 waypoints; the maximum for Litchi is 99"));
+}
+
+TEST(Litchi, AcceptsTheMaximumNumberOfWaypointsAndRejectsOneMore) {
+  FlightPlan plan = sample_plan(vehicle_profile("generic"));
+  plan.waypoints.resize(99, plan.waypoints[0]);
+  EXPECT_EQ(split_plan(plan, Format::litchi).size(), 1U);
+  const std::string text = write_litchi(plan);
+  EXPECT_THAT(validate_litchi(text), IsEmpty());
+  const std::string last_line = text.substr(text.rfind('\n', text.size() - 2) + 1);
+  EXPECT_THAT(validate_litchi(text + last_line), Contains(HasSubstr("too many waypoints: 100")));
+  plan.waypoints.push_back(plan.waypoints[0]);
+  EXPECT_THAT(testing_support::thrown_message([&] { write_litchi(plan); }),
+              HasSubstr("has 100 waypoints; the maximum for Litchi is 99"));
+  const std::vector<FlightPlan> parts = split_plan(plan, Format::litchi);
+  ASSERT_EQ(parts.size(), 2U);
+  EXPECT_EQ(parts[0].waypoints.size(), 99U);
+  EXPECT_EQ(parts[1].waypoints.size(), 2U);  // begins at the last waypoint of the first part
+}
+
+TEST(Kmz, AcceptsTheMaximumNumberOfWaypointsAndRejectsOneMore) {
+  FlightPlan plan = sample_plan(vehicle_profile("m350_rtk"));
+  plan.vehicle.max_waypoints = 200;
+  plan.waypoints.resize(200, plan.waypoints[0]);
+  EXPECT_FALSE(write_kmz(plan).empty());
+  plan.waypoints.push_back(plan.waypoints[0]);
+  EXPECT_THAT(testing_support::thrown_message([&] { write_kmz(plan); }),
+              HasSubstr("has 201 waypoints; vehicle \"m350_rtk\" accepts 200"));
 }
 
 }  // namespace

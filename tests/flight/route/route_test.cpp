@@ -340,6 +340,18 @@ TEST(Route, LimitsWaypointsPerSortieOfConsumerDrones) {
   }
 }
 
+TEST(Route, FillsASortieToTheWaypointLimitAndDividesItAboveTheLimit) {
+  Vehicle consumer = vehicle_profile("m350_rtk");
+  consumer.app = MissionApp::litchi;
+  const Route whole = plan(ring(20, 18, 8), site(), options(), consumer);
+  ASSERT_EQ(whole.sorties.size(), 1U);
+  const auto waypoints = static_cast<int>(sortie_points(whole, whole.sorties[0]).size());
+  consumer.max_waypoints = waypoints;
+  EXPECT_EQ(plan(ring(20, 18, 8), site(), options(), consumer).sorties.size(), 1U);
+  consumer.max_waypoints = waypoints - 1;
+  EXPECT_EQ(plan(ring(20, 18, 8), site(), options(), consumer).sorties.size(), 2U);
+}
+
 TEST(Route, ReportsCapturePointOutOfBatteryRange) {
   std::vector<CapturePoint> capture_points = ring(3, 18, 8);
   capture_points.push_back({look_at({40000, 0, 50}, {0, 0, 8}), 1, 1, 9});
