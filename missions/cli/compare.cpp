@@ -7,6 +7,7 @@
 
 #include "geometry/error.h"
 #include "geometry/io/output_folder.h"
+#include "missions/cli/write_page.h"
 #include "missions/comparison/flight_comparison.h"
 
 namespace skycap::missions::cli {
@@ -33,11 +34,13 @@ int compare(const CompareOptions& options, const Console& console) {
       has_plan ? options.package : std::filesystem::path("results") / options.package.stem();
   geometry::OutputFolder folder(options.out.value_or(results / "compare"));
   folder.replace([](std::string_view name) {
-    return name == comparison::comparison_name || name.starts_with(comparison::patch_stem);
+    return name == comparison::comparison_name || name == comparison::surface_name ||
+           name.starts_with(comparison::patch_stem);
   });
   const comparison::FlightComparison found = comparison::compare_flight(
       request, folder, [&](const std::string& what) { progress.show(what); }, console.stop);
   comparison::stage_comparison(found, request, folder);
+  write_page(comparison::comparison_name, options.has_report, folder, console);
   folder.commit();
   progress.clear();
   if (!options.is_quiet) {
@@ -88,6 +91,7 @@ void add_compare(CLI::App& app, const Console& console, Action& action) {
   command->add_option("--out", options->out,
                       "Output folder (default: compare in the results folder of the mission)");
   command->add_option("--threads", keys->threads, "Number of threads (0: all processors)");
+  command->add_flag("!--no-report", options->has_report, "Do not write the HTML report");
   command->add_flag("--quiet", options->is_quiet, "Print errors only");
   add_set_option(*command, *keys);
   run_with_keys(*command, options, keys, compare, console, action);

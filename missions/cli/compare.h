@@ -23,12 +23,13 @@ struct CompareOptions {
   std::string heights = "auto";  ///< auto, takeoff or absolute
   std::optional<std::filesystem::path> out;  ///< output folder; default: compare in the package
   std::vector<config::KeyOverride> overrides;
+  bool has_report = true;
   bool is_quiet = false;
 };
 
-/// Compares flight logs with the mission of a results folder. Writes compare.json and the route
-/// files of a patch mission for the missed views. Returns exit code 1 if a leg was not flown or a
-/// capture was missed.
+/// Compares flight logs with the mission of a results folder. Writes compare.json, its HTML
+/// report and the route files of a patch mission for the missed views. Returns exit code 1 if a leg
+/// was not flown or a capture was missed.
 int compare(const CompareOptions& options, const Console& console);
 
 void add_compare(CLI::App& app, const Console& console, Action& action);

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -10,6 +12,7 @@
 #include "missions/package/flight_report.h"
 #include "missions/package/replanned_mission.h"
 #include "missions/package/route_json.h"
+#include "missions/package/settings.h"
 #include "missions/package/surface_json.h"
 #include "missions/support/json_text.h"
 #include "missions/support/number_text.h"
@@ -38,6 +41,42 @@ double planned_duration(const FlightComparison& comparison) {
 /// Returns the number, or null if it is unspecified.
 Json number_json(double number) { return std::isfinite(number) ? Json(number) : Json(); }
 
+/// Returns positions, rounded to centimetres.
+Json points_json(const std::vector<Eigen::Vector3d>& points) {
+  Json json = Json::array();
+  for (const Eigen::Vector3d& point : points) {
+    json.push_back(to_json(Eigen::Vector3d((100.0 * point).array().round() / 100.0)));
+  }
+  return json;
+}
+
+/// Returns the flown track in up to 3000 states. Each part ends at a gap in the log.
+Json track_json(const FlightComparison& comparison) {
+  constexpr std::size_t max_states = 3000;
+  const std::vector<flight::TrackState>& states = comparison.track.states;
+  const std::size_t step = (states.size() + max_states - 1) / max_states;
+  Json parts = Json::array();
+  std::vector<Eigen::Vector3d> points;
+  std::vector<double> times;
+  Json distances = Json::array();
+  const auto end_part = [&] {
+    parts.push_back({{"times_s", times}, {"points", points_json(points)}});
+    if (!distances.empty()) parts.back()["distances_m"] = std::exchange(distances, Json::array());
+    points.clear();
+    times.clear();
+  };
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    const bool is_last =
+        i + 1 == states.size() || states[i + 1].time - states[i].time > flight::min_log_gap;
+    if (i % step != 0 && !is_last && !points.empty()) continue;
+    points.push_back(states[i].position);
+    times.push_back(states[i].time - states.front().time);
+    if (!comparison.distances.empty()) distances.push_back(number_json(comparison.distances[i]));
+    if (is_last) end_part();
+  }
+  return parts;
+}
+
 Json legs_json(const FlightComparison& comparison) {
   Json legs = Json::array();
   const double takeoff = comparison.track.states.front().time;
@@ -47,6 +86,7 @@ Json legs_json(const FlightComparison& comparison) {
     Json json{{"from", planned.from},
               {"to", planned.to},
               {"length_m", compute_length(planned)},
+              {"points", points_json(planned.points)},
               {"planned_s", planned.duration},
               {"flown", leg.is_flown},
               {"flown_fraction", leg.flown_fraction}};
@@ -67,6 +107,8 @@ Json captures_json(const FlightComparison& comparison) {
     const flight::CaptureComparison& capture = comparison.route.captures[i];
     Json json{{"item", planned.item},
               {"planned_position", to_json(planned.position)},
+              {"planned_yaw_deg", number_json(planned.yaw_deg)},
+              {"planned_pitch_deg", number_json(planned.pitch_deg)},
               {"made", capture.is_made},
               {"missed", static_cast<bool>(comparison.is_missed[i])}};
     if (capture.is_made) {
@@ -80,12 +122,20 @@ Json captures_json(const FlightComparison& comparison) {
     }
     list.push_back(std::move(json));
   }
+  Json others = Json::array();
+  for (const flight::TrackState& state : comparison.route.other_captures) {
+    others.push_back({{"time_s", state.time - takeoff},
+                      {"position", to_json(state.position)},
+                      {"yaw_deg", state.camera_yaw_deg},
+                      {"pitch_deg", state.camera_pitch_deg}});
+  }
   return {{"source", comparison.route.are_captures_assumed ? "assumed" : "log"},
           {"planned", comparison.plan.captures.size()},
           {"missed", comparison.num_missed_captures()},
           {"other", comparison.route.num_other_captures},
           {"mean_offset_m", to_json(comparison.route.mean_offset)},
-          {"list", list}};
+          {"list", list},
+          {"unplanned", others}};
 }
 
 Json coverage_json(const ComparedCoverage& coverage) {
@@ -313,8 +363,17 @@ void stage_comparison(const FlightComparison& comparison, const CompareRequest& 
                   {"clearance", clearance},
                   {"coverage", comparison.coverage ? coverage_json(*comparison.coverage) : Json()},
                   {"photos", comparison.photos ? photos_json(*comparison.photos) : Json()},
-                  {"patch", patch_json(comparison)}};
+                  {"patch", patch_json(comparison)},
+                  {"track", track_json(comparison)},
+                  {"takeoff", comparison.pad ? to_json(*comparison.pad) : Json()},
+                  {"settings", package::settings_json(comparison.mission)}};
   folder.write(comparison_name, support::json_text(json));
+  if (comparison.coverage) {
+    geometry::write_cloud(folder.stage(surface_name),
+                          geometry::make_columns(comparison.coverage->map));
+  } else if (!comparison.cloud.empty()) {
+    geometry::write_cloud(folder.stage(surface_name), {comparison.cloud, {}, {}, {}, {}});
+  }
 }
 
 std::string comparison_text(const FlightComparison& comparison) {

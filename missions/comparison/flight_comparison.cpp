@@ -17,7 +17,9 @@
 #include "missions/config/photo_rules.h"
 #include "missions/config/resolve.h"
 #include "missions/evaluation/survey_scene.h"
+#include "missions/package/coverage_map.h"
 #include "missions/package/fleet/timetable_file.h"
+#include "missions/package/inspection_summary.h"
 #include "missions/package/package.h"
 #include "missions/package/replanned_mission.h"
 #include "missions/photo/photo_site.h"
@@ -70,16 +72,38 @@ std::vector<std::filesystem::path> find_routes(const std::filesystem::path& fold
               folder.string() + " contains no route file; plan the mission again");
 }
 
+/// Flight of the vehicle that flew, which may be one of a fleet, and its take-off point.
+struct OwnFlight {
+  flight::FlightOptions options;
+  Vector3d pad;
+};
+
+OwnFlight find_own_flight(const std::vector<std::filesystem::path>& routes,
+                          const package::PackagedSurvey& survey) {
+  const std::filesystem::path& first = routes.front();
+  for (const std::filesystem::path& file : routes) {
+    if (package::parse_vehicle_number(file.filename().string()) ==
+        package::parse_vehicle_number(first.filename().string())) {
+      continue;
+    }
+    throw Error(ErrorKind::bad_usage, file.string() + " belongs to another vehicle than " +
+                                          first.string() +
+                                          "; name the files of one vehicle with --route");
+  }
+  OwnFlight own{package::find_file_flight(first, survey.flight), survey.pad};
+  if (survey.flight.is_fleet()) own.pad = own.options.takeoff.value_or(survey.pad);
+  return own;
+}
+
 /// Returns the flight of a route file.
-flight::PlannedFlight read_route(const std::filesystem::path& file,
-                                 const package::PackagedSurvey& survey) {
-  const flight::FlightOptions own = package::find_file_flight(file, survey.flight);
-  flight::FlightFacts facts = own.facts();
-  facts.pad = survey.flight.is_fleet() ? own.takeoff.value_or(survey.pad) : survey.pad;
+flight::PlannedFlight read_route(const std::filesystem::path& file, const OwnFlight& own) {
+  flight::FlightFacts facts = own.options.facts();
+  facts.pad = own.pad;
   facts.is_pad_known = true;
-  facts.vehicle = own.required_vehicle();
+  facts.vehicle = own.options.required_vehicle();
   const flight::InterpretedRoute route = flight::interpret_file(file, facts);
-  const flight::Motion motion(own.required_vehicle(), own.route(facts.pad).conditions);
+  const flight::Motion motion(own.options.required_vehicle(),
+                              own.options.route(facts.pad).conditions);
   return flight::make_planned_flight(route, motion);
 }
 
@@ -119,24 +143,32 @@ flight::FlownTrack read_track(const CompareRequest& request, const flight::Fligh
   return track;
 }
 
-/// Returns the minimum of `distance` over the track, except above the pad.
+/// Returns whether a position is above the pad, where distances are not measured.
+bool is_above_pad(const Vector3d& position, const std::optional<Vector3d>& pad, double climb) {
+  constexpr double pad_radius = 3.0;
+  if (!pad) return false;
+  const Vector3d from_pad = position - *pad;
+  return from_pad.head<2>().norm() < pad_radius && from_pad.z() < climb;
+}
+
+/// Returns the minimum of `distance` over the track, except above the pad. Sets the distances of
+/// the states, unless they are known.
 template <class Distance>
-std::optional<SurfaceDistance> measure_track(const flight::FlownTrack& track,
-                                             const std::optional<Vector3d>& pad, double climb,
-                                             const Distance& distance) {
-  constexpr double step = 0.1, pad_radius = 3.0;
+std::optional<SurfaceDistance> measure_track(const std::optional<Vector3d>& pad, double climb,
+                                             const Distance& distance,
+                                             FlightComparison& comparison) {
+  constexpr double step = 0.1;
   SurfaceDistance nearest{std::numeric_limits<double>::infinity()};
+  std::vector<double> distances;
+  const std::vector<flight::TrackState>& states = comparison.track.states;
+  const double begin = states.front().time;
   const auto measure = [&](const Vector3d& position, double time) {
-    if (pad) {
-      const Vector3d from_pad = position - *pad;
-      if (from_pad.head<2>().norm() < pad_radius && from_pad.z() < climb) return;
-    }
+    if (is_above_pad(position, pad, climb)) return flight::unspecified;
     const double found = distance(position);
     if (found < nearest.distance) nearest = {found, position, time};
+    return found;
   };
-  const std::vector<flight::TrackState>& states = track.states;
-  const double begin = states.front().time;
-  measure(states.front().position, 0.0);
+  distances.push_back(measure(states.front().position, 0.0));
   for (std::size_t i = 1; i < states.size(); ++i) {
     const Vector3d displacement = states[i].position - states[i - 1].position;
     const double duration = states[i].time - states[i - 1].time;
@@ -145,27 +177,38 @@ std::optional<SurfaceDistance> measure_track(const flight::FlownTrack& track,
     const auto count =
         is_known ? static_cast<std::size_t>(std::max(1.0, std::ceil(displacement.norm() / step)))
                  : std::size_t{1};
+    double last = flight::unspecified;
     for (std::size_t k = 1; k <= count; ++k) {
       const double t = static_cast<double>(k) / static_cast<double>(count);
-      measure(states[i - 1].position + t * displacement, states[i - 1].time + t * duration - begin);
+      last = measure(states[i - 1].position + t * displacement,
+                     states[i - 1].time + t * duration - begin);
     }
+    distances.push_back(last);
   }
   if (std::isinf(nearest.distance)) return std::nullopt;
+  if (comparison.distances.empty()) comparison.distances = std::move(distances);
   return nearest;
 }
 
-/// Returns the minimum distance of the track from a cloud, except above the pad.
-std::optional<SurfaceDistance> measure_cloud(const std::filesystem::path& file,
-                                             const flight::FlownTrack& track,
-                                             const std::optional<Vector3d>& pad, double climb) {
+/// Measures the distance of the track from a cloud, except above the pad, and keeps a part of the
+/// cloud.
+void measure_cloud(const std::filesystem::path& file, const std::optional<Vector3d>& pad,
+                   double climb, FlightComparison& comparison) {
   constexpr double typical_radius = 2.0;
+  constexpr std::size_t max_kept = 200'000;
+  const std::vector<Eigen::Vector3f> points = geometry::read_cloud(file).positions;
+  if (points.empty()) return;
   geometry::SpatialIndex index(typical_radius);
-  for (const Eigen::Vector3f& point : geometry::read_cloud(file).positions) index.insert(point);
-  if (index.size() == 0) return std::nullopt;
-  return measure_track(track, pad, climb, [&](const Vector3d& position) {
-    const auto found = index.nearest(position.cast<float>(), 1);
-    return (index.point(found.front().index).cast<double>() - position).norm();
-  });
+  for (const Eigen::Vector3f& point : points) index.insert(point);
+  comparison.cloud_distance = measure_track(
+      pad, climb,
+      [&](const Vector3d& position) {
+        const auto found = index.nearest(position.cast<float>(), 1);
+        return (index.point(found.front().index).cast<double>() - position).norm();
+      },
+      comparison);
+  const std::size_t step = (points.size() + max_kept - 1) / max_kept;
+  for (std::size_t i = 0; i < points.size(); i += step) comparison.cloud.push_back(points[i]);
 }
 
 geometry::View make_view(const Vector3d& position, double yaw_deg, double pitch_deg) {
@@ -236,17 +279,19 @@ std::vector<flight::CapturePoint> make_patch_points(const package::PackagedSurve
   return kept;
 }
 
-package::SurveyMission plan_patch(const package::PackagedSurvey& survey,
+package::SurveyMission plan_patch(const package::PackagedSurvey& survey, const OwnFlight& own,
                                   const std::vector<std::size_t>& views,
                                   geometry::OutputFolder& folder, const std::stop_token& stop) {
   package::SurveyMission mission;
-  mission.image_motion = survey.flight.image_motion_bounds();
-  mission.route =
-      package::plan_flight(survey.flight, survey.measured, survey.pad,
-                           make_patch_points(survey, views), survey.landing_surfaces, stop);
+  mission.image_motion = own.options.image_motion_bounds();
+  std::vector<flight::CapturePoint> points = make_patch_points(survey, views);
+  // The survey began at another take-off point.
+  if (!points.empty() && own.pad != survey.pad) points.front().approach_path.clear();
+  mission.route = package::plan_flight(own.options, survey.measured, own.pad, std::move(points),
+                                       survey.landing_surfaces, stop);
   mission.files = package::stage_flight(
-      survey.name + " " + patch_stem, survey.flight, mission.route, survey.measured,
-      package::package_formats(survey.flight.required_vehicle()), folder, patch_stem);
+      survey.name + " " + patch_stem, own.options, mission.route, survey.measured,
+      package::package_formats(own.options.required_vehicle()), folder, patch_stem);
   return mission;
 }
 
@@ -272,13 +317,16 @@ class CoverageSimulation {
     return package::simulate_reflight(figures_, covered);
   }
   const evaluation::SurveyScene& scene() const { return scene_; }
-  package::MissingSurface find_missing(const simulation::CoveredAgain& covered,
-                                       const std::vector<ViewInFlight>& views) const {
+  /// Sets the missing surface and the map of these captures.
+  void map_surface(const simulation::CoveredAgain& covered, const std::vector<ViewInFlight>& views,
+                   ComparedCoverage& coverage) const {
     std::vector<geometry::View> poses;
     for (const ViewInFlight& view : views) poses.push_back(view.view);
     const package::TrueCoverage& truth = *figures_.truth;
-    return package::missing_surface(
-        package::true_patches(truth.samples, truth.area, covered.stored, truth.is_visible), poses);
+    const auto patches =
+        package::true_patches(truth.samples, truth.area, covered.stored, truth.is_visible);
+    coverage.missing = package::missing_surface(patches, poses);
+    coverage.map = package::coverage_map(patches);
   }
 
  private:
@@ -344,7 +392,7 @@ ComparedCoverage compute_coverage(const CoverageSimulation& simulation,
   std::vector<ViewInFlight> views = flown_views(comparison);
   const simulation::CoveredAgain covered = simulation.simulate(views);
   coverage.flown = simulation.measure(covered);
-  coverage.missing = simulation.find_missing(covered, views);
+  simulation.map_surface(covered, views, coverage);
   if (!comparison.patch) return coverage;
   double time = views.empty() ? 0.0 : views.back().time;
   for (const geometry::View& view : flight::photo_views(comparison.patch->route)) {
@@ -411,9 +459,9 @@ void simulate_coverage(const config::MissionSetup& setup, std::filesystem::path 
   const CoverageSimulation simulation(options, setup.run, scene_folder, stop);
   if (!comparison.has_plan) {
     const geometry::MeshDistance model(simulation.scene().model(), setup.run.threads);
-    comparison.model_distance =
-        measure_track(comparison.track, pad, setup.flight().climb(),
-                      [&](const Vector3d& position) { return model.distance(position); });
+    comparison.model_distance = measure_track(
+        pad, setup.flight().climb(),
+        [&](const Vector3d& position) { return model.distance(position); }, comparison);
   }
   if (comparison.no_coverage.empty()) {
     comparison.coverage = compute_coverage(simulation, comparison);
@@ -437,14 +485,15 @@ FlightComparison compare_without_plan(const CompareRequest& request,
   FlightComparison comparison;
   comparison.name = setup.name;
   comparison.has_plan = false;
+  comparison.mission = setup;
+  comparison.pad = pad;
   comparison.clearance = setup.flight().clearance;
   report("reading " + request.logs.front().string());
   comparison.track =
       read_track(request, setup.flight(), pad.value_or(Vector3d::Zero()), mission_positions(setup));
   comparison.route = flight::measure_flight(comparison.track);
   if (request.cloud) {
-    comparison.cloud_distance =
-        measure_cloud(*request.cloud, comparison.track, pad, setup.flight().climb());
+    measure_cloud(*request.cloud, pad, setup.flight().climb(), comparison);
   }
   report(setup.name + ": computing coverage");
   simulate_coverage(setup, request.folder.parent_path(), request, pad, comparison, stop);
@@ -460,38 +509,46 @@ FlightComparison compare_flight(const CompareRequest& request, geometry::OutputF
     return compare_without_plan(request, report, stop);
   }
   report("reading " + request.folder.string());
+  if (package::read_inspection_summary(request.folder, {})) {
+    throw Error(ErrorKind::bad_usage,
+                request.folder.string() +
+                    " is a continuous inspection flight without captures; evaluate its flown "
+                    "trajectory with benchmark MISSION --also MISSION=FILE");
+  }
   const config::MissionSetup setup =
       package::read_package_summary(request.folder, request.overrides).mission;
   const package::PackagedSurvey survey = package::read_package(request.folder, request.overrides);
   FlightComparison comparison;
   comparison.name = survey.name;
+  comparison.mission = setup;
   comparison.clearance = survey.flight.clearance;
   const auto routes =
       request.routes.empty() ? find_routes(request.folder, survey.flight) : request.routes;
+  const OwnFlight own = find_own_flight(routes, survey);
+  comparison.pad = own.pad;
   for (const std::filesystem::path& file : routes) {
     comparison.files.push_back(file.filename().string());
-    append_flight(comparison.plan, read_route(file, survey));
+    append_flight(comparison.plan, read_route(file, own));
   }
   report("reading " + request.logs.front().string());
-  std::vector<Vector3d> positions{survey.pad};
+  std::vector<Vector3d> positions{own.pad};
   for (const flight::PlannedLeg& leg : comparison.plan.legs) {
     positions.insert(positions.end(), leg.points.begin(), leg.points.end());
   }
-  comparison.track = read_track(request, survey.flight, survey.pad, positions);
+  comparison.track = read_track(request, own.options, own.pad, positions);
   report(survey.name + ": comparing");
   comparison.route = flight::compare_route(comparison.plan, comparison.track, request.comparison);
   find_missed(survey, comparison);
   const std::filesystem::path cloud = request.cloud.value_or(request.folder / cloud_name);
   if (request.cloud || std::filesystem::exists(cloud)) {
-    comparison.cloud_distance =
-        measure_cloud(cloud, comparison.track, survey.pad, survey.flight.climb());
+    measure_cloud(cloud, own.pad, own.options.climb(), comparison);
   }
-  if (!comparison.missed_views.empty() && !survey.flight.is_fleet()) {
+  if (!comparison.missed_views.empty()) {
     report(survey.name + ": planning the patch mission");
-    comparison.patch = plan_patch(survey, comparison.missed_views, folder, stop);
+    comparison.patch = plan_patch(survey, own, comparison.missed_views, folder, stop);
   }
   report(survey.name + ": computing coverage");
-  simulate_coverage(setup, {}, request, survey.pad, comparison, stop);
+  simulate_coverage(setup, {}, request, own.pad, comparison, stop);
   return comparison;
 }
 

@@ -15,8 +15,10 @@
 
 #include "flight/flown/flown_track.h"
 #include "flight/flown/route_comparison.h"
+#include "geometry/io/cloud_io.h"
 #include "geometry/io/output_folder.h"
 #include "missions/config/key_override.h"
+#include "missions/config/mission_setup.h"
 #include "missions/package/flight_files.h"
 #include "missions/package/holes.h"
 #include "missions/session/view_in_flight.h"
@@ -53,6 +55,7 @@ struct ComparedCoverage {
   /// Flown captures and those of the patch mission. Empty without a patch mission.
   std::optional<package::ReflightCoverage> patched;
   package::MissingSurface missing;  ///< Surface that the flown captures do not cover.
+  geometry::AttributedCloud map;    ///< Coverage map of the flown captures.
 };
 
 /// Expected photogrammetric reconstruction by photos, for missions with a photo camera.
@@ -77,10 +80,17 @@ struct FlightComparison {
   std::vector<std::size_t> missed_views;          ///< Indices of the mission's views, ascending.
   std::optional<SurfaceDistance> cloud_distance;  ///< Empty without a measured cloud.
   std::optional<SurfaceDistance> model_distance;  ///< Empty unless the scene was simulated.
-  std::optional<ComparedCoverage> coverage;       ///< Empty without a scene.
-  std::optional<ComparedPhotos> photos;           ///< Empty without a photo camera.
-  std::string no_coverage;                        ///< Reason why the coverage was not computed.
-  std::optional<package::SurveyMission> patch;    ///< Empty if no view was missed.
+  /// Distance of each state of the track from the cloud, otherwise from the model [m]. NaN next to
+  /// the take-off point. Empty without a surface.
+  std::vector<double> distances;
+  /// Evenly distributed points of the measured cloud.
+  std::vector<Eigen::Vector3f> cloud;
+  config::MissionSetup mission;
+  std::optional<Eigen::Vector3d> pad;           ///< Take-off point.
+  std::optional<ComparedCoverage> coverage;     ///< Empty without a scene.
+  std::optional<ComparedPhotos> photos;         ///< Empty without a photo camera.
+  std::string no_coverage;                      ///< Reason why the coverage was not computed.
+  std::optional<package::SurveyMission> patch;  ///< Empty if no view was missed.
 
   std::size_t num_flown_legs() const;
   std::size_t num_missed_captures() const;
@@ -88,6 +98,9 @@ struct FlightComparison {
 
 /// Name of the file with the results.
 inline constexpr const char* comparison_name = "compare.json";
+/// Name of the file with the coverage map of the flown captures, or with a part of the measured
+/// cloud if the coverage was not computed.
+inline constexpr const char* surface_name = "surface.ply";
 /// Prefix of the files of the patch mission.
 inline constexpr const char* patch_stem = "patch";
 
@@ -98,7 +111,7 @@ FlightComparison compare_flight(const CompareRequest& request, geometry::OutputF
                                 const std::function<void(const std::string&)>& report,
                                 const std::stop_token& stop);
 
-/// Stages compare.json (docs/reference/results.md).
+/// Stages compare.json and surface.ply (docs/reference/results.md).
 void stage_comparison(const FlightComparison& comparison, const CompareRequest& request,
                       geometry::OutputFolder& folder);
 

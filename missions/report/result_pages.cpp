@@ -9,6 +9,7 @@
 #include "missions/package/package.h"
 #include "missions/report/comparison_page.h"
 #include "missions/report/district_page.h"
+#include "missions/report/flown_page.h"
 #include "missions/report/inspection_page.h"
 #include "missions/report/photo_page.h"
 #include "missions/report/scan_page.h"
@@ -36,7 +37,7 @@ std::vector<ResultPage> pages_in(const fs::path& folder) {
   }
   throw Error(ErrorKind::bad_file, folder.string() +
                                        ": contains no results; specify a folder written by plan, "
-                                       "scan, benchmark or finish that contains one of " +
+                                       "scan, compare, benchmark or finish that contains one of " +
                                        names);
 }
 
@@ -73,6 +74,7 @@ const std::vector<ResultPage>& result_pages() {
       {"results.json", "benchmark.html",
        [](const ResultFinder& results, std::size_t) { return benchmark_page(results); }},
       {"scan.json", "scan.html", scan_page},
+      {"compare.json", "compare.html", flown_page},
       {"district.json", "district.html",
        [](const ResultFinder& results, std::size_t) { return district_page(results); }}};
   return pages;

@@ -18,7 +18,7 @@ struct ResultPage {
   std::string (*make)(const ResultFinder& results, std::size_t max_points);
 };
 
-/// Returns the reports of surveys, trials, comparisons, scans and districts.
+/// Returns the reports of surveys, trials, planner comparisons, scans, flown logs and districts.
 const std::vector<ResultPage>& result_pages();
 
 /// Generated report with its path.

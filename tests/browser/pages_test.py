@@ -269,6 +269,17 @@ class OtherPagesTest(unittest.TestCase):
         finally:
             page.close()
 
+    def test_a_flight_compared_with_its_plan(self):
+        results = plan(self.folder, MISSION % "flown")
+        rows = (results / "mission.csv").read_text().splitlines()
+        log = self.folder / "aborted.csv"
+        log.write_text("\n".join(rows[:len(rows) // 2]) + "\n")
+        run("compare", str(results), str(log))
+        text = self.shows(results / "compare" / "compare.html")
+        for words in ("Flight compared with its plan", "Missed captures", "not flown", "Patch mission",
+                      "Distance to the surface"):
+            self.assertIn(words.lower(), text.lower())
+
     def test_scans(self):
         """Scans of a laser and a camera with navigation errors of about 0.2 m."""
         mission = self.folder / "mission.yaml"

@@ -15,7 +15,8 @@ async function load_library(name) {
 }
 
 const kinds = { survey: "Survey report", cloud: "Point cloud", mission: "Mission, before the survey",
-  scan: "Scan report", comparison: "Benchmark", trials: "Trials of a mission", photos: "Photo mission", inspection: "Inspection flight", district: "District report" };
+  scan: "Scan report", comparison: "Benchmark", trials: "Trials of a mission", photos: "Photo mission", inspection: "Inspection flight",
+  flown: "Flight compared with its plan", district: "District report" };
 
 function facts_of(data) {
   const settings = value_at(data, "summary.settings") || {}, facts = [];
@@ -91,6 +92,7 @@ function sections_of(data, skycap) {
   }
   if (data.kind === "district") return district_sections(data);
   if (data.kind === "photos") return photo_sections(data);
+  if (data.kind === "flown") return flown_sections(data, skycap);
   if (data.kind === "scan") {
     return [scan_section(data), scan_charts(data), accuracy_section(data), files_section(data),
       settings_section(data), how_section(how_scanned)];

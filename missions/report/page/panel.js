@@ -79,8 +79,9 @@ class Panel {
   say_view(number) {
     const views = views_of(this.data);
     if (this.data.pieces) {
+      const time = views[number].time_s, start = this.data.kind === "flown" ? 0 : views[0].time_s;
       this.now.textContent = this.data.piece + " " + number + " (0 to " + (views.length - 1) + ") · " +
-        shown(views[number].time_s - views[0].time_s, "clock");
+        (time === null ? "missed" : shown(time - start, "clock"));
       return;
     }
     const ceiling = this.data.summary.attainable_coverage;
@@ -138,7 +139,7 @@ class Panel {
     vehicles_of(this.data).forEach((vehicle, i) => {
       rows.push(element("div", { class: "row" }, swatch(vehicle_colour(i), "dot"), "fleet: vehicle " + (i + 1)));
     });
-    for (const way of trajectory_lines(this.data)) {
+    for (const way of trajectory_lines(this.data).filter(({ name }) => name)) {
       rows.push(element("div", { class: "row" }, swatch(way.colour, "dot"), way.name));
     }
     const scene = this.data.scene || {};
@@ -198,6 +199,10 @@ class Panel {
     const rows = [
       ["position", places_text(view.position)], ["heading", shown(heading, "degrees")],
       ["pitch", shown(Math.asin(Math.max(-1, Math.min(1, z))) * 180 / Math.PI, "degrees")]];
+    if (this.data.kind === "flown") {
+      return [["item", view.item], ["state", view.missed ? "missed" : "captured"], ...rows,
+        ["time after take-off", shown(view.time_s, "clock")], ["distance from the plan", shown(view.error_m, "metres")]];
+    }
     if (this.data.pieces) {
       return [...rows, ["time", shown(view.time_s, "clock")], ["points shown", shown(view.points, "count")]];
     }
@@ -227,7 +232,8 @@ class Panel {
       this.viewer.picture_of(number, picture);
       parts.push(picture, element("p", { class: "caption" }, "points added by this view, from the sensor position"));
     }
-    this.open_card((this.data.pieces ? "Image " : "View ") + number, parts);
+    const name = this.data.kind === "flown" ? "Capture " : this.data.pieces ? "Image " : "View ";
+    this.open_card(name + number, parts);
   }
 
   tell_point(point) {

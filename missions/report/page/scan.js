@@ -4,6 +4,7 @@ const flown_colour = [236, 240, 243], believed_colour = [88, 183, 224];
 
 /// Returns the true and the estimated trajectory of the sensor, if they differ visibly.
 function trajectory_lines(data) {
+  if (data.kind === "flown") return flown_lines(data);
   if (!data.trajectory) return [];
   const { flown, believed } = data.trajectory, lines = [];
   const apart = Math.max(0, ...flown.points.map((point, i) =>

@@ -208,7 +208,7 @@ function view_group(data, size) {
   const geometry = line_geometry(points), colours = new Float32Array(3 * points.length);
   geometry.setAttribute("color", new THREE.BufferAttribute(colours, 3));
   views.forEach((view, i) => {
-    const colour = along(ramp_stops.slice(1), views.length > 1 ? i / (views.length - 1) : 0);
+    const colour = view.missed ? missed_colour : along(ramp_stops.slice(1), views.length > 1 ? i / (views.length - 1) : 0);
     for (let k = 16 * i; k < 16 * i + 16; ++k) colours.set(colour.map((c) => c / 255), 3 * k);
   });
   group.add(new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({ vertexColors: THREE.VertexColors })));

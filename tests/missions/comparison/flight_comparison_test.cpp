@@ -155,7 +155,19 @@ TEST_F(FlightComparisonTest, FindsKnownErrorsAndClosesThem) {
     }
     EXPECT_NEAR(captures["mean_offset_m"][0].get<double>(), 0.5, 0.02);
     EXPECT_NEAR(captures["mean_offset_m"][1].get<double>(), 0.0, 0.02);
-    EXPECT_LT(json["clearance"]["min_cloud_distance_m"], 10.0);
+    const double min_distance = json["clearance"]["min_cloud_distance_m"].get<double>();
+    EXPECT_LT(min_distance, 10.0);
+
+    // The track in the report is the flight that was logged.
+    ASSERT_EQ(json["track"].size(), 1);
+    const Json& track = json["track"][0];
+    ASSERT_EQ(track["points"].size(), track["distances_m"].size());
+    for (const Json& distance : track["distances_m"]) {
+      EXPECT_TRUE(distance.is_null() || distance.get<double>() > min_distance - 1e-6);
+    }
+    const std::string page = tests::read_content(folder_ / "teapot/compare/compare.html");
+    EXPECT_THAT(page, HasSubstr("\"kind\":\"flown\""));
+    EXPECT_THAT(page, HasSubstr("5 of 7 legs flown, 3 captures missed"));
 
     // Coverage of the flown poses, and of the flown poses with the patch mission.
     const Json& coverage = json["coverage"];
@@ -184,6 +196,51 @@ TEST_F(FlightComparisonTest, ComparesAFlightInSeveralLogs) {
                             0);
   EXPECT_EQ(json["captures"]["missed"], 0);
   EXPECT_EQ(json["log_kind"], "ArduPilot dataflash log, PX4 ULog");
+}
+
+/// One vehicle of a fleet is compared with its own files, and repeats its own missed views.
+TEST(FleetComparison, ComparesOneVehicleAndPlansItsPatch) {
+  const tests::TestFolder folder;
+  std::string mission = tests::flight_mission();
+  const std::string vehicle = "vehicle: generic,";
+  mission.replace(mission.find(vehicle), vehicle.size(),
+                  "vehicles: [generic, generic_ardupilot], separation: 6,");
+  const tests::ProgramRun plan =
+      tests::run_skycap({"plan", folder.write("m.yaml", mission), "--seed", "2", "--out",
+                         folder / "m", "--no-report", "--quiet"});
+  ASSERT_EQ(plan.exit_code, 0) << plan.err;
+  const Json fleet = Json::parse(tests::read_content(folder / "m/summary.json"))["flight"]["fleet"];
+  const Json& second = fleet["vehicles"][1];
+  ASSERT_FALSE(second["order"].empty());
+
+  // The vehicle rises above its take-off point and lands again.
+  const Json& pad = second["pad"];
+  std::vector<FlownState> flown;
+  for (int i = 0; i < 40; ++i) {
+    const double height = 0.5 * std::min(i, 40 - i);
+    flown.push_back({{0.5 * i,
+                      {pad[0].get<double>(), pad[1].get<double>(), pad[2].get<double>() + height},
+                      0.0,
+                      0.0,
+                      0.0},
+                     false});
+  }
+  const std::string log = folder.write(
+      "second.bin", flight::write_dataflash(flown, site, flown.front().state.position));
+  std::string route;
+  for (const auto& entry : std::filesystem::directory_iterator(folder / "m")) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("fleet-2") && name.ends_with(".waypoints")) route = entry.path().string();
+  }
+  ASSERT_FALSE(route.empty());
+  const tests::ProgramRun run =
+      tests::run_skycap({"compare", folder / "m", log, "--route", route, "--no-report"});
+  EXPECT_EQ(run.exit_code, 1) << run.err;
+  const Json json = Json::parse(tests::read_content(folder / "m/compare/compare.json"));
+  EXPECT_EQ(json["takeoff"], pad);
+  EXPECT_EQ(json["captures"]["missed"], second["order"].size());
+  EXPECT_EQ(json["patch"]["waypoints"], second["order"].size());
+  EXPECT_GE(json["patch"]["min_clearance_m"].get<double>(), 2.0);
 }
 
 TEST_F(FlightComparisonTest, AssumesCapturesOfTracks) {
