@@ -55,7 +55,7 @@ bool has_tally(const fs::path& folder, const std::string& identity) {
   }
 }
 
-CloudTally read_tally(const fs::path& folder) {
+CloudTally read_tally(const fs::path& folder, std::size_t samples) {
   try {
     const Json json = parsed(folder);
     CloudTally tally;
@@ -65,12 +65,22 @@ CloudTally read_tally(const fs::path& folder) {
     for (const char mark : json.at("covered").get<std::string>()) {
       tally.is_covered.push_back(mark == '1' ? 1 : 0);
     }
+    if (tally.is_covered.size() != samples) {
+      throw Error(ErrorKind::bad_file, (folder / shard_file_name).string() +
+                                           ": is damaged (number of samples); remove this file");
+    }
+    const fs::path file_name = folder / distances_name;
+    const auto points = json.at("points").get<std::size_t>();
+    std::error_code failure;
+    // The number in the file may be any: memory is allocated only for distances that exist.
+    const std::uintmax_t present = fs::file_size(file_name, failure) / sizeof(float);
+    std::ifstream file(file_name, std::ios::binary);
     std::vector<float>& distances = tally.distances.distances;
-    distances.resize(json.at("points").get<std::size_t>());
-    std::ifstream file(folder / distances_name, std::ios::binary);
-    if (!file.read(reinterpret_cast<char*>(distances.data()),
-                   static_cast<std::streamsize>(distances.size() * sizeof(float)))) {
-      throw Error(ErrorKind::bad_file, (folder / distances_name).string() + ": is truncated");
+    if (!failure && points <= present) distances.resize(points);
+    if (distances.size() != points ||
+        !file.read(reinterpret_cast<char*>(distances.data()),
+                   static_cast<std::streamsize>(points * sizeof(float)))) {
+      throw Error(ErrorKind::bad_file, file_name.string() + ": is truncated");
     }
     return tally;
   } catch (const Json::exception& failure) {

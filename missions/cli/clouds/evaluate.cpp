@@ -311,7 +311,7 @@ class CloudShards final : public ShardedJob {
 
   bool load_shard(std::size_t number) override {
     if (!evaluation::has_tally(own_shard_folder(number), identity(number))) return false;
-    all_.add(evaluation::read_tally(own_shard_folder(number)));
+    all_.add(evaluation::read_tally(own_shard_folder(number), truth_.samples));
     return true;
   }
 

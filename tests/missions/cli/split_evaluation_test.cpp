@@ -136,6 +136,25 @@ TEST_F(SplitEvaluation, SkipsCompletePiecesAndReportsMissingOnes) {
   EXPECT_THAT(damaged.err, HasSubstr("distances.bin: is truncated"));
 }
 
+TEST_F(SplitEvaluation, RejectsPiecesWithOtherNumbers) {
+  write_cloud(1000);
+  ASSERT_EQ(shards(2, {"--index", "0"}).exit_code, 0);
+  ASSERT_EQ(shards(2, {"--index", "1"}).exit_code, 0);
+  const fs::path file = folder_.path() / "out" / "pieces" / "1_of_2" / "piece.json";
+  std::ifstream stream(file);
+  const auto whole = nlohmann::ordered_json::parse(stream);
+  const auto collected = [&](const char* field, const nlohmann::ordered_json& value) {
+    auto changed = whole;
+    changed[field] = value;
+    std::ofstream(file) << changed;
+    const auto run = shards(2, {"--collect"});
+    EXPECT_EQ(run.exit_code, 2) << field;
+    return run.err;
+  };
+  EXPECT_THAT(collected("points", 1'000'000'000'000), HasSubstr("distances.bin: is truncated"));
+  EXPECT_THAT(collected("covered", "01"), HasSubstr("piece.json: is damaged"));
+}
+
 TEST_F(SplitEvaluation, RejectsUnsupportedInput) {
   const auto rejection = [&](const std::vector<std::string>& words) {
     const auto run = run_skycap(words);
