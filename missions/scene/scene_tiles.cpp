@@ -31,6 +31,9 @@ namespace {
 namespace fs = std::filesystem;
 using Eigen::Vector3d;
 
+/// Maximum number of tiles in the rows and columns of one entry.
+constexpr int max_copies = 1'000'000;
+
 /// Entry of a tiles file.
 class TileEntry {
  public:
@@ -104,6 +107,9 @@ class TileEntry {
     const bool is_builtin = model.starts_with("builtin:");
     one_.model = is_builtin || model.starts_with("model:") ? model : (base_path_ / model).string();
     const int columns = count("columns"), rows = count("rows");
+    if (columns * rows > max_copies) {
+      section_.fail_at("rows", "times columns must be at most " + std::to_string(max_copies));
+    }
     const bool is_alone = columns == 1 && rows == 1;
     const double spacing = is_alone ? section_.number("spacing", 0.0) : section_.number("spacing");
     if (!is_alone && !(spacing > 0.0)) section_.fail_at("spacing", "must be above 0");
