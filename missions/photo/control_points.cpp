@@ -6,6 +6,7 @@
 #include "flight/export/text.h"
 #include "geometry/error.h"
 #include "geometry/pose/brown_distortion.h"
+#include "geometry/pose/world.h"
 #include "geometry/text_parts.h"
 #include "missions/photo/photo_table.h"
 
@@ -62,6 +63,9 @@ std::vector<ControlPoint> read_control_points(const std::string& text,
            "-180 to 180 degrees");
     }
     point.position = is_local ? values : frame->to_local({values.x(), values.y(), values.z()});
+    if (!geometry::is_valid_position(point.position)) {
+      fail(i + 1, "is more than 10,000 km from the origin");
+    }
     points.push_back(std::move(point));
   }
   if (points.empty()) fail(lines.size(), "must be followed by at least one point");

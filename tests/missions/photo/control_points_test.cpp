@@ -38,6 +38,8 @@ TEST(ControlPoints, NameTheLineThatIsWrong) {
   EXPECT_THAT(error_message("x,y,z\n", {}), HasSubstr("line 1 must be"));
   EXPECT_THAT(error_message("name,x,y,z\nP,1,2\n", {}), HasSubstr("line 2 has 3 fields"));
   EXPECT_THAT(error_message("name,x,y,z\nP,1,2,three\n", {}), HasSubstr("line 2 has \"three\""));
+  EXPECT_THAT(error_message("name,x,y,z\nP,1,2,-1e8\n", {}),
+              HasSubstr("line 2 is more than 10,000 km from the origin"));
   EXPECT_THAT(error_message("name,x,y,z\nP,1,2,3\nP,1,2,3\n", {}),
               HasSubstr("line 3 lists \"P\" again"));
   EXPECT_THAT(error_message("name,x,y,z\n,1,2,3\n", {}), HasSubstr("line 2 has no name"));
