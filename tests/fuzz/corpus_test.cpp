@@ -13,6 +13,7 @@
 
 #include "geometry/io/file.h"
 #include "tests/fuzz/readers.h"
+#include "tests/fuzz/structure.h"
 
 namespace skycap::fuzz {
 namespace {
@@ -105,17 +106,65 @@ TEST_P(Corpus, ReadsOrRejectsTruncatedFiles) {
   }
 }
 
+/// Number of changes of each file: all files of a reader together are changed as often as one to
+/// four files.
+std::uint32_t changes_per_file(std::size_t files) {
+  const std::uint32_t changes = number_in_environment("CORPUS_CHANGES", 200);
+  return std::max<std::uint32_t>(
+      1, changes * 4 / static_cast<std::uint32_t>(std::max<std::size_t>(files, 4)));
+}
+
 TEST_P(Corpus, ReadsOrRejectsFilesWithChangedBytes) {
   std::mt19937 random(number_in_environment("CORPUS_SEED", 1));
-  const std::uint32_t changes = number_in_environment("CORPUS_CHANGES", 200);
-  for (const fs::path& path : find_corpus_files(GetParam())) {
-    for (std::uint32_t change = 0; change < changes; ++change) {
+  const auto files = find_corpus_files(GetParam());
+  for (const fs::path& path : files) {
+    for (std::uint32_t change = 0; change < changes_per_file(files.size()); ++change) {
       std::string bytes = read_bytes(path);
       if (bytes.empty()) continue;
       for (const auto& make : {change_bytes, move_chunk, make_extreme}) {
         if (random() % 2 == 0 && !bytes.empty()) make(bytes, random);
       }
       expect_held(bytes, path.filename().string() + ", change " + std::to_string(change));
+    }
+  }
+}
+
+std::mt19937 bytes_random;
+
+std::string change_any_bytes(std::string bytes, std::size_t max) {
+  if (bytes.empty()) return std::string(std::min<std::size_t>(max, 1), '0');
+  change_bytes(bytes, bytes_random);
+  return bytes;
+}
+
+TEST_P(Corpus, ReadsOrRejectsFilesWithChangedStructure) {
+  const Structure* const structure = find_structure(GetParam().name);
+  if (structure == nullptr) return;
+  std::mt19937 random(number_in_environment("CORPUS_SEED", 1));
+  bytes_random.seed(random());
+  const auto files = find_corpus_files(GetParam());
+  for (const fs::path& path : files) {
+    for (std::uint32_t change = 0; change < changes_per_file(files.size()) / 2 + 1; ++change) {
+      const std::string bytes =
+          mutated(*structure, read_bytes(path), random, 1 << 16, change_any_bytes);
+      expect_held(bytes,
+                  path.filename().string() + ", structural change " + std::to_string(change));
+    }
+  }
+}
+
+/// A structure that lost parts or their lengths would hide them from the fuzzer.
+TEST(Structures, JoinTheirPartsToTheSameParts) {
+  for (const Structure& structure : all_structures()) {
+    for (const std::string_view reader : structure.readers) {
+      if (find_reader(reader).run == nullptr) continue;  // requires ROS 2
+      for (const fs::path& path : find_corpus_files(find_reader(reader))) {
+        const auto raw_parts = structure.split(read_bytes(path));
+        if (raw_parts.empty()) continue;
+        const auto parts = structure.split(structure.join(raw_parts));  // without damaged bytes
+        EXPECT_EQ(parts.size(), raw_parts.size()) << path;
+        EXPECT_EQ(structure.split(structure.join(parts)), parts) << path;
+      }
     }
   }
 }

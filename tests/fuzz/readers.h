@@ -22,7 +22,9 @@ struct Reader {
 
 std::span<const Reader> surface_readers();  ///< meshes, clouds, measured free space
 std::span<const Reader> route_readers();    ///< mission files, trajectories, parameters
-std::span<const Reader> prior_readers();    ///< city models, earlier scans
+std::span<const Reader> table_readers();    ///< imported routes, tables, tiles, stored results
+std::span<const Reader> prior_readers();    ///< maps, terrain, city models, earlier scans
+std::span<const Reader> studio_readers();   ///< requests to the studio, edits of missions
 std::span<const Reader> link_readers();     ///< MAVLink, messages of live surveys
 std::span<const Reader> record_readers();   ///< recordings, journals, results
 std::span<const Reader>

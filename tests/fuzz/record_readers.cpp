@@ -195,6 +195,8 @@ constexpr Reader readers[] = {
     {"page_scan", [](const std::uint8_t* b, std::size_t n) { return run_page("scan.json", b, n); }},
     {"page_trials",
      [](const std::uint8_t* b, std::size_t n) { return run_page("trials.json", b, n); }},
+    {"page_district",
+     [](const std::uint8_t* b, std::size_t n) { return run_page("district.json", b, n); }},
     {"page_benchmark",
      [](const std::uint8_t* b, std::size_t n) { return run_page("results.json", b, n); }},
 };

@@ -42,8 +42,9 @@ std::string sealed_e57(const std::string& pages) {
 
 std::vector<Reader> all_readers() {
   std::vector<Reader> all;
-  for (const auto readers : {surface_readers(), route_readers(), prior_readers(), link_readers(),
-                             record_readers(), mission_readers()}) {
+  for (const auto readers :
+       {surface_readers(), route_readers(), table_readers(), prior_readers(), link_readers(),
+        record_readers(), mission_readers(), studio_readers()}) {
     all.insert(all.end(), readers.begin(), readers.end());
   }
 #ifdef SKYCAP_ROS2_READERS
