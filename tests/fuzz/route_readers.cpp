@@ -17,19 +17,50 @@ namespace {
 
 const flight::Site site{{51.753458, -1.254022, 111.5}, 46.7};
 
-/// Reads the positions of a route, its interpretation and its return altitude.
+/// Returns the facts of a mission with all properties against which a route is checked.
+flight::FlightFacts full_facts() {
+  flight::FlightFacts facts{.site = site};
+  facts.vehicle = missions::config::find_vehicle("generic_ardupilot");
+  facts.is_pad_known = false;
+  facts.rally = {{20, 5, 0}};
+  facts.hold = 2.0;
+  const std::vector<Eigen::Vector2d> square = {{-5, -5}, {5, -5}, {5, 5}, {-5, 5}};
+  facts.no_fly.push_back({"tower", square, 0.0, 30.0});
+  facts.fence = flight::Prism{"fence", square, -10.0, 60.0};
+  geometry::View view;
+  view.position = {3, 4, 10};
+  view.direction = {0, 1, 0};
+  facts.views.push_back(view);
+  facts.photo = flight::PhotoShutter{.gsd = 0.01};
+  return facts;
+}
+
+/// Reads the positions of a route, its interpretations for two missions and its return altitude.
 int run_route(const char* name, const std::uint8_t* bytes, std::size_t size) {
   return run_reader(name, [&] {
     const auto path = file_with(name, bytes_to_string(bytes, size));
     for (const Eigen::Vector3d& position : flight::read_route(path, site, {0, 0, 0})) {
       require(geometry::is_valid_position(position), "a place out of the world");
     }
+    for (const flight::FormatInfo& info : flight::formats()) {
+      const bool is_own = std::string_view(name).ends_with(info.extension);
+      if (is_own) flight::validate(bytes_to_string(bytes, size), info.format);
+    }
     const auto height = flight::read_return_height(path);
     require(!height || std::isfinite(*height), "a height of return that is no number");
+    static const flight::FlightFacts full = full_facts();
     flight::FlightFacts facts{.site = site};
     facts.vehicle = missions::config::find_vehicle("generic");
-    for (const flight::InterpretedSegment& segment : flight::interpret_file(path, facts).segments) {
-      require(segment.to.allFinite(), "a stretch to nowhere");
+    for (const flight::FlightFacts& known : {facts, full}) {
+      const auto route = flight::interpret_file(path, known);
+      require(std::isfinite(flight::length(route)), "a route of no length");
+      for (const flight::InterpretedSegment& segment : route.segments) {
+        require(segment.to.allFinite(), "a stretch to nowhere");
+      }
+      for (const flight::FlownPass& pass : route.is_fly_through) {
+        require(pass.position.allFinite(), "a photo at no position");
+        require(pass.stops_before <= route.stops.size(), "a photo after a stop that is not there");
+      }
     }
   });
 }
