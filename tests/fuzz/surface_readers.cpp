@@ -1,3 +1,4 @@
+#include <span>
 #include <sstream>
 
 #include "flight/clearance/measured_space.h"
@@ -65,6 +66,18 @@ int run_cloud(const char* name, const std::uint8_t* bytes, std::size_t size) {
   if (std::string_view(name).find(".la") != std::string_view::npos) {
     run_reader("", [&] { require_convertible_las(file_with(name, bytes_to_string(bytes, size))); });
   }
+  run_reader(name, [&] {
+    const auto path = file_with(name, bytes_to_string(bytes, size));
+    double last = 0.0;
+    geometry::read_positions(path, [&](std::span<const Eigen::Vector3f> points, double end) {
+      require(end >= last && end <= 1.0, "a share that goes back");
+      last = end;
+      for (const Eigen::Vector3f& point : points) {
+        require(geometry::is_valid_position(point.cast<double>(), 16384.0),
+                "a point out of the world");
+      }
+    });
+  });
   run_reader(name, [&] { require_convertible(file_with(name, bytes_to_string(bytes, size))); });
   return run_reader(name, [&] {
     const auto cloud = geometry::read_cloud(file_with(name, bytes_to_string(bytes, size)));
