@@ -75,12 +75,19 @@ TEST(SurveyLoop, MeasuresDistanceFromFirstView) {
 
 TEST(SurveyLoop, StopsAtLimits) {
   WalkingPlanner first(100);
-  EXPECT_EQ(run_survey(first, start, {.max_views = 4}, {.sense = sense}).stop_reason,
-            StopReason::view_limit);
+  const SurveyResult views = run_survey(first, start, {.max_views = 4}, {.sense = sense});
+  EXPECT_EQ(views.stop_reason, StopReason::view_limit);
+  EXPECT_THAT(positions(views), ElementsAre(0, 1, 2, 3));
   WalkingPlanner second(100);
-  const SurveyResult result = run_survey(second, start, {.max_distance = 2.5}, {.sense = sense});
-  EXPECT_EQ(result.stop_reason, StopReason::distance_limit);
-  EXPECT_THAT(positions(result), ElementsAre(0, 1, 2));
+  const SurveyResult distance = run_survey(second, start, {.max_distance = 2.5}, {.sense = sense});
+  EXPECT_EQ(distance.stop_reason, StopReason::distance_limit);
+  EXPECT_THAT(positions(distance), ElementsAre(0, 1, 2));
+  // Three views take 3 x 5 s and 2 m at 1 m/s.
+  WalkingPlanner third(100);
+  const SurveyResult time =
+      run_survey(third, start, {.max_time = 17.0, .speed = 1.0}, {.sense = sense});
+  EXPECT_EQ(time.stop_reason, StopReason::time_limit);
+  EXPECT_THAT(positions(time), ElementsAre(0, 1, 2));
 }
 
 TEST(SurveyLoop, RequestsAlternativeForUnreachableView) {
