@@ -82,10 +82,10 @@ TEST(SurveyLoop, StopsAtLimits) {
   const SurveyResult distance = run_survey(second, start, {.max_distance = 2.5}, {.sense = sense});
   EXPECT_EQ(distance.stop_reason, StopReason::distance_limit);
   EXPECT_THAT(positions(distance), ElementsAre(0, 1, 2));
-  // Three views take 3 x 5 s and 2 m at 1 m/s.
+  // The third view ends after 17 s (3 x 5 s and 2 m at 1 m/s), a fourth would end after 23 s.
   WalkingPlanner third(100);
   const SurveyResult time =
-      run_survey(third, start, {.max_time = 17.0, .speed = 1.0}, {.sense = sense});
+      run_survey(third, start, {.max_time = 20.0, .speed = 1.0}, {.sense = sense});
   EXPECT_EQ(time.stop_reason, StopReason::time_limit);
   EXPECT_THAT(positions(time), ElementsAre(0, 1, 2));
 }
