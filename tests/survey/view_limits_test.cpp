@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <random>
 
 #include <gmock/gmock.h>
@@ -78,6 +79,21 @@ TEST(ViewLimits, RaiseLowViewsAndKeepAllowedViews) {
   const auto kept = limits.make_target_view({0, 0, 1}, Vector3d(0, 0, 1), 10.0);
   ASSERT_TRUE(kept);
   EXPECT_TRUE(kept->position.isApprox(Vector3d(0, 0, 11)));
+}
+
+// A camera that cannot look up sees a low target from above, and one that cannot look down far sees
+// it from the side.
+TEST(ViewLimits, TurnViewsIntoThePitchRangeOfTheGimbal) {
+  ViewLimits limits;
+  limits.min_pitch = -1.0;
+  limits.max_pitch = 0.0;
+  const auto pitch_from = [&](const Vector3d& towards_view) -> std::optional<double> {
+    const auto view = limits.make_target_view({0, 0, 5}, towards_view.normalized(), 10.0);
+    return view ? std::optional(std::asin(view->direction.z())) : std::nullopt;
+  };
+  EXPECT_THAT(pitch_from({1, 0, -1}), testing::Optional(testing::DoubleNear(0.0, 1e-9)));
+  EXPECT_THAT(pitch_from({1, 0, 9}), testing::Optional(testing::DoubleNear(-1.0, 1e-9)));
+  EXPECT_THAT(pitch_from({1, 0, 1}), testing::Optional(testing::DoubleNear(-45.0 * degree, 1e-9)));
 }
 
 TEST(ViewLimits, ReportTheInvalidField) {

@@ -76,7 +76,7 @@ TEST(EstimatedTrajectory, HasErrorsOfGivenSizeAndCorrelationTime) {
                                 .seed = 3};
   const Trajectory estimated = estimated_trajectory(ground_truth, errors);
   Vector3d square = Vector3d::Zero(), turn_square = Vector3d::Zero();
-  double neighbours = 0.0, before = 0.0;
+  double neighbours = 0.0, before = 0.0, east_and_north = 0.0, north_and_height = 0.0;
   for (const StampedPose& pose : estimated.poses()) {
     const Vector3d error = pose.position - Vector3d(1, 2, 3);
     const AngleAxisd turned(yaw(0.7).conjugate() * pose.attitude);
@@ -84,6 +84,8 @@ TEST(EstimatedTrajectory, HasErrorsOfGivenSizeAndCorrelationTime) {
     turn_square += (turned.angle() * turned.axis()).cwiseAbs2() / 40'000;
     neighbours += error.x() * before / 40'000;
     before = error.x();
+    east_and_north += error.x() * error.y() / 40'000;
+    north_and_height += error.y() * error.z() / 40'000;
   }
   const auto expect_variance = [](double variance, double sigma) {
     EXPECT_NEAR(variance, sigma * sigma, 0.033 * sigma * sigma);
@@ -95,12 +97,23 @@ TEST(EstimatedTrajectory, HasErrorsOfGivenSizeAndCorrelationTime) {
   expect_variance(turn_square.y(), 0.001);
   expect_variance(turn_square.z(), 0.004);
   EXPECT_NEAR(neighbours / square.x(), std::exp(-1.0), 0.03);
+  EXPECT_NEAR(east_and_north / (0.02 * 0.02), 0.0, 0.03);
+  EXPECT_NEAR(north_and_height / (0.02 * 0.05), 0.0, 0.03);
 }
 
 TEST(EstimatedTrajectory, EqualsGroundTruthWithoutErrors) {
   const Trajectory ground_truth({{0.0, {1, 2, 3}, yaw(0.7)}, {2.0, {2, 2, 3}, yaw(0.9)}});
   const Trajectory estimated = estimated_trajectory(ground_truth, {});
   EXPECT_TRUE(estimated.pose(1.3).isApprox(ground_truth.pose(1.3), 1e-15));
+}
+
+TEST(EstimatedTrajectory, HasOtherErrorsForAnotherSeed) {
+  const Trajectory ground_truth({{0.0, {1, 2, 3}, yaw(0.7)}, {2.0, {2, 2, 3}, yaw(0.9)}});
+  NavigationErrors errors{.horizontal_sigma = 0.02, .seed = 3};
+  const Vector3d first = estimated_trajectory(ground_truth, errors).pose(1.3).translation();
+  EXPECT_EQ(estimated_trajectory(ground_truth, errors).pose(1.3).translation(), first);
+  errors.seed = 4;
+  EXPECT_NE(estimated_trajectory(ground_truth, errors).pose(1.3).translation(), first);
 }
 
 TEST(NavigationErrors, RejectNegativeSigma) {
