@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "geometry/io/file.h"
 #include "tests/faults/fault_run.h"
 #include "tests/support/temporary_folder.h"
 
@@ -221,6 +222,29 @@ TEST(FaultPoints, LeaveCalibratedVehicleFilesComplete) {
   };
   try_faults(calibrate, {"full", "kill"}, all);
   try_faults(calibrate, {"memory"}, 25);
+}
+
+/// Returns the number of renames and appended records of a command that follow data which is not on
+/// the disk yet.
+long count_unflushed(const std::vector<std::string>& arguments, const fs::path& count) {
+  EXPECT_EQ(run(arguments, {"unflushed", 0, count}), 0);
+  return std::stol(geometry::read_file(count));
+}
+
+// Otherwise a power failure could leave an empty file with its final name, or a gap in a journal.
+TEST(FlushedFiles, AreOnTheDiskBeforeTheNextStep) {
+  const testing_support::TemporaryFolder folder;
+  const fs::path count = folder.path() / "count", out = folder.path() / "package";
+  const std::string mission = folder.file("m.yaml", flight_mission_text),
+                    log = folder.file("1.csv", flight_log(300.0));
+  EXPECT_EQ(count_unflushed({"plan", mission, "--quiet", "--resume", "--out", out}, count), 0);
+  EXPECT_EQ(
+      count_unflushed({"export", out, "--format", "plan", "--out", folder.path() / "plan"}, count),
+      0);
+  EXPECT_EQ(count_unflushed({"calibrate", log, "--vehicle", "generic_ardupilot", "--out",
+                             folder.path() / "v.yaml"},
+                            count),
+            0);
 }
 
 }  // namespace

@@ -6,6 +6,9 @@
 //   "kill"    disk operations; the process is killed as by kill -9
 //   "memory"  allocations fail
 //   "start"   starts of other programs fail with EAGAIN
+//   "unflushed"  renames of files, and further appended records, before earlier data of the file
+//   has
+//             been flushed; no effect. After a power failure, this data may be missing.
 // FAULT_AT     number of the step, counted from 1; 0: none
 // FAULT_COUNT  file that receives the number of steps when the program ends
 #include <atomic>
@@ -15,10 +18,14 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <mutex>
+#include <set>
+#include <utility>
 
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <spawn.h>
+#include <sys/stat.h>
 #include <sys/uio.h>
 #include <unistd.h>
 
@@ -26,7 +33,7 @@ extern "C" void* __libc_malloc(size_t size) noexcept;  // dlsym() allocates memo
 
 namespace {
 
-enum class Kind { none, full, kill, memory, start };
+enum class Kind { none, full, kill, memory, start, unflushed };
 
 Kind parse_fault_kind(const char* name) {
   if (name == nullptr) return Kind::none;
@@ -34,6 +41,7 @@ Kind parse_fault_kind(const char* name) {
   if (std::strcmp(name, "kill") == 0) return Kind::kill;
   if (std::strcmp(name, "memory") == 0) return Kind::memory;
   if (std::strcmp(name, "start") == 0) return Kind::start;
+  if (std::strcmp(name, "unflushed") == 0) return Kind::unflushed;
   return Kind::none;
 }
 
@@ -53,6 +61,36 @@ bool fails(bool needs_space = true) {
   errno = ENOSPC;
   return needs_space;
 }
+
+/// Device and inode of the files whose data has been written but not flushed.
+class UnflushedFiles {
+ public:
+  void note_write(int handle) { change(handle, true); }
+  void note_flush(int handle) { change(handle, false); }
+  void note_rename(const char* from) {
+    struct stat status {};
+    if (kind != Kind::unflushed || ::lstat(from, &status) != 0) return;
+    const std::lock_guard lock(mutex_);
+    if (files_.contains({status.st_dev, status.st_ino})) ++steps;
+  }
+
+ private:
+  void change(int handle, bool is_written) {
+    struct stat status {};
+    if (kind != Kind::unflushed || ::fstat(handle, &status) != 0) return;
+    if (!S_ISREG(status.st_mode)) return;
+    const std::lock_guard lock(mutex_);
+    const std::pair file(status.st_dev, status.st_ino);
+    if (!is_written) {
+      files_.erase(file);
+    } else if (!files_.insert(file).second && (::fcntl(handle, F_GETFL) & O_APPEND) != 0) {
+      ++steps;
+    }
+  }
+
+  std::mutex mutex_;
+  std::set<std::pair<dev_t, ino_t>> files_;
+} unflushed;
 
 template <typename Function>
 Function* real(const char* name) {
@@ -89,32 +127,40 @@ class Switch {
 extern "C" {
 
 ssize_t write(int handle, const void* bytes, size_t count) {
+  unflushed.note_write(handle);
   if (is_file(handle) && fails()) return -1;
   return real<ssize_t(int, const void*, size_t)>("write")(handle, bytes, count);
 }
 
 ssize_t writev(int handle, const iovec* parts, int count) {
+  unflushed.note_write(handle);
   if (is_file(handle) && fails()) return -1;
   return real<ssize_t(int, const iovec*, int)>("writev")(handle, parts, count);
 }
 
 ssize_t pwrite(int handle, const void* bytes, size_t count, off_t at) {
+  unflushed.note_write(handle);
   if (is_file(handle) && fails()) return -1;
   return real<ssize_t(int, const void*, size_t, off_t)>("pwrite")(handle, bytes, count, at);
 }
 
 size_t fwrite(const void* bytes, size_t size, size_t count, FILE* file) {
+  unflushed.note_write(::fileno(file));
   if (is_file(::fileno(file)) && fails()) return 0;
   return real<size_t(const void*, size_t, size_t, FILE*)>("fwrite")(bytes, size, count, file);
 }
 
-int fsync(int handle) { return fails() ? -1 : real<int(int)>("fsync")(handle); }
+int fsync(int handle) {
+  unflushed.note_flush(handle);
+  return fails() ? -1 : real<int(int)>("fsync")(handle);
+}
 
 int ftruncate(int handle, off_t size) noexcept {
   return fails() ? -1 : real<int(int, off_t)>("ftruncate")(handle, size);
 }
 
 int rename(const char* from, const char* to) noexcept {
+  unflushed.note_rename(from);
   return fails() ? -1 : real<int(const char*, const char*)>("rename")(from, to);
 }
 

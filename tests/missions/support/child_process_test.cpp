@@ -7,6 +7,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/mman.h>
 
 #include "tests/support/complaint.h"
 
@@ -35,6 +36,19 @@ TEST(ChildProcess, ReportsCrashOrEarlyExit) {
   const std::string end = "x.file: is damaged: their library stopped while reading it";
   EXPECT_EQ(error_message([](PipeWriter&) { std::raise(SIGKILL); }), end);
   EXPECT_EQ(error_message([](PipeWriter&) {}), end);
+}
+
+TEST(ChildProcess, HasNoMoreThanItsMemory) {
+  const auto can_reserve = [](std::size_t bytes) {
+    ChildProcess child({"x.file", "their library", 1}, [bytes](PipeWriter& pipe) {
+      void* const memory = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE,
+                                  MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+      pipe.put(memory != MAP_FAILED);
+    });
+    return child.read<bool>();
+  };
+  EXPECT_TRUE(can_reserve(max_child_memory / 2));
+  EXPECT_FALSE(can_reserve(max_child_memory + 1));
 }
 
 TEST(ChildProcess, EndsAfterTimeout) {

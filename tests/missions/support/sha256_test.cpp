@@ -26,9 +26,7 @@ TEST(Sha256, MatchesPublishedExamples) {
   EXPECT_EQ(compute_file_sha256(folder.path() / "million"), digest);
 }
 
-TEST(Sha256, RejectsMissingFile) {
-  EXPECT_THROW(compute_file_sha256("does/not/exist"), Error);
-}
+TEST(Sha256, RejectsMissingFile) { EXPECT_THROW(compute_file_sha256("does/not/exist"), Error); }
 
 }  // namespace
 }  // namespace skycap::missions::support

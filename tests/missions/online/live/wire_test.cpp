@@ -62,6 +62,9 @@ TEST(Wire, WaitsForIncompleteMessages) {
 
 TEST(Wire, RejectsInvalidMessages) {
   EXPECT_THAT(rejection(std::string(12, '\xff')), HasSubstr("too large"));
+  const std::string large = "\xff\xff\xff\x7f", small(4, '\1');
+  EXPECT_THAT(rejection(large + small + small), HasSubstr("too large"));  // the header
+  EXPECT_THAT(rejection(small + large + small), HasSubstr("too large"));  // the payload
   std::string damaged = encode_frame(sample);
   damaged.back() ^= 1;
   EXPECT_THAT(rejection(damaged), HasSubstr("checksum"));
