@@ -28,9 +28,14 @@ class WalkingPlanner final : public Planner {
     return walk_on();
   }
   std::optional<View> next_alternative_view() override { return walk_on(); }
+  void pass(const geometry::ScanSpan& scan) override {
+    passed.push_back(scan.sensor_position().x());
+  }
   const geometry::PointCloud& cloud() const override { return cloud_; }
   geometry::PointCloud take_cloud() override { return std::move(cloud_); }
   const PlanningStep& last_step() const override { return step_; }
+
+  std::vector<double> passed;  ///< Positions of the en-route scans.
 
  private:
   std::optional<View> walk_on() {
@@ -88,6 +93,22 @@ TEST(SurveyLoop, StopsAtLimits) {
       run_survey(third, start, {.max_time = 20.0, .speed = 1.0}, {.sense = sense});
   EXPECT_EQ(time.stop_reason, StopReason::time_limit);
   EXPECT_THAT(positions(time), ElementsAre(0, 1, 2));
+}
+
+// The planner receives each en-route scan before the scan of the view, and the survey lists them.
+TEST(SurveyLoop, GivesEnRouteScansToThePlanner) {
+  WalkingPlanner planner(2);
+  const auto halfway = [](const View& from, const View& to) {
+    return std::vector{View{0.5 * (from.position + to.position), to.direction}};
+  };
+  const SurveyResult result = run_survey(
+      planner, start, {}, {.sense = sense, .en_route_views = halfway, .sense_en_route = sense});
+  EXPECT_THAT(planner.passed, ElementsAre(0.5, 1.5));
+  ASSERT_EQ(result.views.size(), 3U);
+  EXPECT_TRUE(result.views[0].en_route.views.empty());
+  ASSERT_EQ(result.views[2].en_route.views.size(), 1U);
+  EXPECT_EQ(result.views[2].en_route.views[0].position.x(), 1.5);
+  EXPECT_EQ(result.views[2].en_route.returns, 2U);
 }
 
 TEST(SurveyLoop, RequestsAlternativeForUnreachableView) {

@@ -81,6 +81,17 @@ TEST(MissionReader, AppliesOverridesAndNamesTheirOrigin) {
               HasSubstr("did you mean planner.density?"));
 }
 
+// YAML: a quoted scalar is a string.
+TEST(MissionReader, TellsStringsFromNumbers) {
+  EXPECT_EQ(error_message(smallest + "limits: {max_views: 12}\n"), "");
+  EXPECT_THAT(error_message(smallest + "limits: {max_views: '12'}\n"),
+              HasSubstr("key limits.max_views is the string '12'; it must be an integer"));
+  EXPECT_THAT(error_message(smallest + "limits: {max_views: 2.5}\n"),
+              HasSubstr("key limits.max_views is 2.5; it must be an integer"));
+  EXPECT_THAT(error_message(smallest + "planner: {density: '12'}\n"),
+              HasSubstr("key planner.density is the string '12'; it must be "));
+}
+
 TEST(MissionReader, SuggestsKeyInCorrectSection) {
   EXPECT_EQ(error_message(smallest + "sensor:\n  sigma: 0.1\n"),
             "m.yaml:4: key sensor.sigma is unknown; did you mean sensor.noise.sigma?");
