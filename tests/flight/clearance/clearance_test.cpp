@@ -185,6 +185,19 @@ TEST(Clearance, RejectsLegThatLeavesFenceBetweenWaypoints) {
   EXPECT_NEAR(space.closest({{5, 5, 28}, {5, 6, 28}}, 9).distance, 2.0, 1e-9);
 }
 
+// A distance that equals the clearance may be too short by its rounding error.
+TEST(Clearance, RejectsLegsWithinTheGuardOfTheClearance) {
+  Obstacles obstacles;
+  obstacles.ground_height = 0.0;
+  const KnownSpace space(obstacles);
+  const auto is_verified_at = [&](double z) {
+    return verify(space, {{0, 0, z}, {10, 0, z}}, 2.0).is_verified;
+  };
+  EXPECT_FALSE(is_verified_at(2.0));
+  EXPECT_FALSE(is_verified_at(2.0 + 0.5 * clearance_guard));
+  EXPECT_TRUE(is_verified_at(2.0 + 2.0 * clearance_guard));
+}
+
 TEST(Clearance, TreatsGroundAsSolid) {
   Obstacles obstacles;
   obstacles.ground_height = 10.0;
