@@ -70,6 +70,11 @@ TEST(PriorKeys, SetEveryFieldOfSource) {
 }
 
 // The mission in a package contains the same sources.
+TEST(PriorKeys, RejectFractionsInListsOfIntegers) {
+  EXPECT_NO_THROW(parsed("prior: [{file: x.las, role: truth, select: {classes: [2]}}]\n"));
+  EXPECT_THROW(parsed("prior: [{file: x.las, role: truth, select: {classes: [2.5]}}]\n"), Error);
+}
+
 TEST(PriorKeys, ReadBackFromSettings) {
   const config::MissionDocument given = parsed(
       "prior: [{file: tile.gml, role: target, base: terrain, place: {heading_deg: 90}},\n"
