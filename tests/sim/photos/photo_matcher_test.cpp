@@ -14,7 +14,9 @@ using testing::Each;
 
 /// Photos of a wall from positions side by side, and samples on the wall.
 struct WallPhotos {
-  explicit WallPhotos(double contrast, double spacing = 0.9, int count = 4) : scene(wall_at(5.0)) {
+  explicit WallPhotos(double contrast, double spacing = 0.9, int count = 4,
+                      const geometry::PhotoCameraConfig& config = small_camera(4))
+      : scene(wall_at(5.0)), camera(config) {
     for (int i = 0; i < count; ++i) {
       views.push_back({{spacing * (i - 0.5 * (count - 1)), 0, 0}, Vector3d::UnitY()});
       images.push_back(simulate_photo(
@@ -33,7 +35,7 @@ struct WallPhotos {
   }
 
   Scene scene;
-  geometry::PhotoCamera camera{small_camera(4)};
+  geometry::PhotoCamera camera;
   std::vector<geometry::View> views;
   std::vector<GreyImage> images;
   std::vector<MatchSample> samples;
@@ -44,6 +46,12 @@ TEST(PhotoMatcher, FindsTheDepthsOfATexturedWall) {
   EXPECT_GE(completeness(photos.right(), 1), 0.99);
   EXPECT_GE(completeness(photos.right(), 3), 0.9) << "of four photos";
   EXPECT_EQ(photos.right({.threads = 1}), photos.right({.threads = 3}));
+}
+
+TEST(PhotoMatcher, FindsTheDepthsInDistortedPhotos) {
+  geometry::PhotoCameraConfig config = small_camera(4);
+  config.distortion = geometry::BrownDistortion{.k1 = -0.2, .p1 = 0.01};
+  EXPECT_GE(completeness(WallPhotos(1.0, 0.9, 4, config).right(), 1), 0.95);
 }
 
 TEST(PhotoMatcher, FindsNothingWithoutTexture) {
