@@ -86,21 +86,6 @@ TEST(OutputFolder, KeepsEarlierResultsAfterFailedCommit) {
   EXPECT_THAT(names_in(folder.path()), ElementsAre("cloud", "notes", "summary"));
 }
 
-// The second of the four renames fails.
-TEST(OutputFolder, RestoresEarlierResultsIfARenameFails) {
-  const TemporaryFolder folder;
-  commit_pair(folder.path(), "old");
-  {
-    OutputFolder out(folder.path());
-    for (const char* name : {"cloud", "summary"}) out.write(name, "new");
-    fs::create_directory(folder.path() / ".old-cloud");
-    EXPECT_THAT([&] { out.commit(); }, ThrowsMessage<Error>(HasSubstr("cannot be renamed")));
-  }
-  EXPECT_EQ(read_file(folder.path() / "cloud"), "old");
-  EXPECT_EQ(read_file(folder.path() / "summary"), "old");
-  EXPECT_THAT(names_in(folder.path()), ElementsAre(".old-cloud", "cloud", "summary"));
-}
-
 TEST(OutputFolder, RemovesFilesOfKilledProgram) {
   const TemporaryFolder folder;
   for (const char* name : {".part-1-cloud", ".part-0-summary", ".old-cloud", "mine"}) {

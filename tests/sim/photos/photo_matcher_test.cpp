@@ -50,7 +50,7 @@ TEST(PhotoMatcher, FindsTheDepthsOfATexturedWall) {
 
 TEST(PhotoMatcher, FindsTheDepthsInDistortedPhotos) {
   geometry::PhotoCameraConfig config = small_camera(4);
-  config.distortion = geometry::BrownDistortion{.k1 = -0.2, .p1 = 0.01};
+  config.distortion = geometry::BrownDistortion{.k1 = 0.5, .p1 = 0.01};
   EXPECT_GE(completeness(WallPhotos(1.0, 0.9, 4, config).right(), 1), 0.95);
 }
 
