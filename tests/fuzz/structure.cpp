@@ -636,9 +636,9 @@ std::string mutated(const Structure& structure, string_view input, std::mt19937&
                     std::size_t max, Mutate mutate) {
   Parts parts = structure.split(input);
   if (parts.empty()) return mutate(string(input), max);
-  for (std::uint32_t changes = 1 + random() % 3; changes > 0; --changes) {
+  for (auto changes = 1 + random() % 3; changes > 0; --changes) {
     const std::size_t i = random() % parts.size(), other = random() % parts.size();
-    const std::uint32_t choice = parts.size() == 1 ? 9 : random() % 10;
+    const auto choice = parts.size() == 1 ? 9 : random() % 10;
     if (choice == 0) {
       parts.insert(parts.begin() + static_cast<std::ptrdiff_t>(i), string(parts[other]));
     } else if (choice == 1) {

@@ -101,6 +101,20 @@ TEST(MeasuredSpace, KeepsFreeSpaceClearOfGroundTruthForDepthImages) {
                     0.5, 30);
 }
 
+TEST(MeasuredSpace, EndsFreeSpaceBeforeTheMeasuredSurfaceByTheDepthMargin) {
+  const geometry::Mesh scene = room();
+  for (const double margin : {0.1, 1.0, 2.0}) {
+    MeasuredSpace space({.voxel = 0.2, .depth_margin = margin});
+    space.insert(depth_image(scene, small_camera, look_at({-7, 0, 5}, {9, 0, 5})), small_camera);
+    const auto is_free = [&](double from_wall) {
+      const Vector3d position(10.0 - from_wall, 0.1, 5.1);
+      return space.is_free({position, position}, 0.01);
+    };
+    EXPECT_FALSE(is_free(0.9 * margin)) << margin;
+    EXPECT_TRUE(is_free(margin + 0.8)) << margin;
+  }
+}
+
 TEST(MeasuredSpace, DoesNotDependOnThreadCount) {
   const geometry::Mesh scene = room();
   const auto known_on = [&](unsigned threads) {
