@@ -835,7 +835,7 @@ class StudioTest(unittest.TestCase):
         studio.wait_for(lambda: "ceiling: 33" in text.get_attribute("value"))
         for step in ("site", "mission", "results"):
             studio.click(f"nav button[data-step={step}]")
-            for summary in studio.browser.find_elements(By.CSS_SELECTOR, f"#{step} summary"):
+            for summary in studio.browser.find_elements(By.CSS_SELECTOR, f"#{step} details:not([open]) > summary"):
                 studio.click(summary)
             shown = [one for one in studio.browser.find_elements(
                 By.CSS_SELECTOR, f"#{step} input, #{step} select, #{step} textarea, #{step} iframe")
