@@ -108,7 +108,8 @@ class TileEntry {
     one_.model = is_builtin || model.starts_with("model:") ? model : (base_path_ / model).string();
     const int columns = count("columns"), rows = count("rows");
     if (columns * rows > max_copies) {
-      section_.fail_at("rows", "times columns must be at most " + std::to_string(max_copies));
+      section_.fail_at("rows",
+                       "multiplied by columns must be at most " + std::to_string(max_copies));
     }
     const bool is_alone = columns == 1 && rows == 1;
     const double spacing = is_alone ? section_.number("spacing", 0.0) : section_.number("spacing");

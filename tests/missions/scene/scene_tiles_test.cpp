@@ -172,7 +172,7 @@ TEST_F(TileScan, RejectsInvalidTilesInOneLine) {
       {"[{model: joined.ply, rows: 2, spacing: -1}]", "spacing must be above 0"},
       {"[{model: joined.ply, rows: 0}]", "rows must be from 1 to 10000"},
       {"[{model: joined.ply, rows: 9999, columns: 9999, spacing: 9}]",
-       "rows times columns must be at most 1000000"},
+       "rows: multiplied by columns must be at most 1000000"},
       {"[{model: joined.ply, kinds: 3}]", "applies only to generated builtin models"},
       {"[{model: joined.ply, position: [1, 2]}]", "position must be [east, north, up]"},
       {"[{model: joined.ply, colour: red}]", "colour"},
