@@ -185,9 +185,11 @@ int reject(const package::ImportedFlight& flight, const std::string& file, doubl
   return 1;
 }
 
-/// Returns the name of a leg of a corner file, whose first corner is in line 2.
-std::string corner_leg(std::size_t leg) {
-  return fmt::format("leg {} (line {} to line {})", leg + 1, leg + 2, leg + 3);
+/// Returns a problem of the flight along a corner file, whose first corner is in line 2.
+std::string problem_text(const survey::inspection::FlightProblem& problem) {
+  if (!problem.leg) return problem.what;
+  const std::size_t leg = *problem.leg;
+  return fmt::format("leg {} (line {} to line {}): {}", leg + 1, leg + 2, leg + 3, problem.what);
 }
 
 /// Verifies the flight along the corners of a file and writes the results of the inspection with
@@ -213,18 +215,17 @@ int export_corners(const ExportOptions& options, const Console& console) {
   ProgressLine progress(console, false);
   const auto report = [&](const std::string& what) { progress.show(setup.name + ": " + what); };
   report("verifying the flight");
+  auto corners = inspection::read_corners_csv(file);
   inspection::EditedInspection edited;
   try {
-    edited = inspection::plan_edited_inspection(*package, inspection::read_corners_csv(file),
-                                                console.stop, report);
+    edited = inspection::plan_edited_inspection(*package, std::move(corners), console.stop, report);
   } catch (const Error& error) {
-    const std::string what = error.what();
-    throw Error(error.kind(), what.starts_with(file) ? what : file + ": " + what);
+    throw Error(error.kind(), file + ": " + error.what());
   }
   if (!edited.problems.empty()) {
     progress.clear();
-    for (const survey::inspection::LegProblem& problem : edited.problems) {
-      console.out << file << ": " << corner_leg(problem.leg) << ": " << problem.what << "\n";
+    for (const survey::inspection::FlightProblem& problem : edited.problems) {
+      console.out << file << ": " << problem_text(problem) << "\n";
     }
     console.out << file << ": not verified, " << support::counted(edited.problems.size(), "problem")
                 << "; move the corners; no file written\n"

@@ -3,8 +3,11 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <fstream>
 #include <numbers>
+#include <optional>
 #include <string_view>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -43,6 +46,30 @@ bool parse(std::string_view field, double& number) {
   return error == std::errc() && parsed == end && std::isfinite(number);
 }
 
+/// Returns the first six numbers of a line, or std::nullopt if one is missing or invalid.
+std::optional<std::array<double, columns>> parse_numbers(
+    const std::vector<std::string_view>& fields) {
+  std::array<double, columns> values{};
+  if (fields.size() < columns) return std::nullopt;
+  for (std::size_t i = 0; i < columns; ++i) {
+    if (!parse(fields[i], values[i])) return std::nullopt;
+  }
+  return values;
+}
+
+/// Calls `callback` with the number and the fields of each line that has fields.
+template <class Callback>
+void for_each_row(std::string_view text, const Callback& callback) {
+  std::size_t number = 0;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    const std::vector<std::string_view> fields = fields_of(text.substr(at, end - at));
+    at = end + 1;
+    ++number;
+    if (!fields.empty()) callback(number, fields);
+  }
+}
+
 [[noreturn]] void reject(const std::filesystem::path& file, std::size_t line,
                          const std::string& what) {
   throw Error(ErrorKind::bad_file, fmt::format("{}:{}: {}", file.string(), line, what));
@@ -68,29 +95,19 @@ std::string write_flight_csv(std::span<const FlightSample> flight) {
 std::vector<FlightSample> read_flight_csv(const std::filesystem::path& file) {
   const std::string text = geometry::read_file(file);
   std::vector<FlightSample> flight;
-  std::size_t number = 0;
   bool may_be_header = true;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find('\n', at), text.size());
-    const std::string_view line(text.data() + at, end - at);
-    at = end + 1;
-    ++number;
-    const std::vector<std::string_view> fields = fields_of(line);
-    if (fields.empty() || fields[0].starts_with('#')) continue;
-    std::array<double, columns> values{};
-    bool is_valid = fields.size() >= columns;
-    for (std::size_t i = 0; i < columns && is_valid; ++i) is_valid = parse(fields[i], values[i]);
-    if (!is_valid) {
-      if (!may_be_header) reject(file, number, "expected six numbers: t, x, y, z, yaw, pitch");
-      may_be_header = false;
-      continue;
+  for_each_row(text, [&](std::size_t number, const std::vector<std::string_view>& fields) {
+    if (fields[0].starts_with('#')) return;
+    const auto values = parse_numbers(fields);
+    if (!values && !may_be_header) {
+      reject(file, number, "expected six numbers: t, x, y, z, yaw, pitch");
     }
     may_be_header = false;
-    if (!flight.empty() && values[0] <= flight.back().time) {
-      reject(file, number, "times must ascend");
-    }
-    flight.push_back({values[0], {values[1], values[2], values[3]}, values[4], values[5]});
-  }
+    if (!values) return;
+    const auto& [time, x, y, z, yaw, pitch] = *values;
+    if (!flight.empty() && time <= flight.back().time) reject(file, number, "times must ascend");
+    flight.push_back({time, {x, y, z}, yaw, pitch});
+  });
   if (flight.empty()) reject(file, 1, "contains no samples of a flight: t, x, y, z, yaw, pitch");
   return flight;
 }
@@ -108,43 +125,43 @@ std::string write_corners_csv(std::span<const Vertex> corners) {
 }
 
 bool is_corner_file(const std::filesystem::path& file) {
-  if (geometry::lower_extension(file) != ".csv") return false;
-  const std::string text = geometry::read_file(file, largest_corner_file);
-  const std::string_view content = geometry::without_mark(text);
+  std::error_code ignored;
+  if (geometry::lower_extension(file) != ".csv" ||
+      !std::filesystem::is_regular_file(file, ignored)) {
+    return false;
+  }
+  std::ifstream stream = geometry::open_stream(file);
+  std::string head(256, '\0');  // Other tables may be large.
+  stream.read(head.data(), std::ssize(head));
+  head.resize(static_cast<std::size_t>(stream.gcount()));
+  const std::string_view content = geometry::without_mark(head);
   return geometry::trimmed(content.substr(0, content.find('\n'))) == corner_header;
 }
 
 std::vector<Vertex> read_corners_csv(const std::filesystem::path& file) {
   const std::string text = geometry::read_file(file, largest_corner_file);
   std::vector<Vertex> corners;
-  std::size_t number = 0;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find('\n', at), text.size());
-    const std::string_view line(text.data() + at, end - at);
-    at = end + 1;
-    ++number;
-    const std::vector<std::string_view> fields = fields_of(line);
-    if (number == 1 || fields.empty()) continue;
-    std::array<double, columns> values{};
-    bool is_valid = fields.size() == columns;
-    for (std::size_t i = 0; i < columns && is_valid; ++i) is_valid = parse(fields[i], values[i]);
-    constexpr double max_delay = 86400.0;
-    if (!is_valid || std::abs(values[3]) > 360.0 || std::abs(values[4]) > 90.0 || values[5] < 0.0 ||
-        values[5] > max_delay) {
+  for_each_row(text, [&](std::size_t number, const std::vector<std::string_view>& fields) {
+    if (number == 1) return;  // the header
+    constexpr double max_heading = 360.0, max_pitch = 90.0, max_delay = 86400.0;
+    const auto values = parse_numbers(fields);
+    if (!values || fields.size() != columns || std::abs((*values)[3]) > max_heading ||
+        std::abs((*values)[4]) > max_pitch || (*values)[5] < 0.0 || (*values)[5] > max_delay) {
       reject(file, number,
-             fmt::format("expected the numbers {} with headings up to 360, pitches up to 90 and "
-                         "delays from 0 to 86400",
-                         corner_header));
+             fmt::format("expected the numbers {} with headings up to {}, pitches up to {} and "
+                         "delays from 0 to {}",
+                         corner_header, max_heading, max_pitch, max_delay));
     }
+    const auto& [x, y, z, heading, pitch, delay] = *values;
     Vertex corner;
-    corner.position = {values[0], values[1], values[2]};
+    corner.position = {x, y, z};
     geometry::require_valid_position(corner.position,
                                      fmt::format("{}:{}: the corner", file.string(), number));
-    corner.yaw = std::remainder(radians_per_degree * (90.0 - values[3]), 2.0 * std::numbers::pi);
-    corner.pitch = radians_per_degree * values[4];
-    corner.delay = values[5];
+    corner.yaw = std::remainder(radians_per_degree * (90.0 - heading), 2.0 * std::numbers::pi);
+    corner.pitch = radians_per_degree * pitch;
+    corner.delay = delay;
     corners.push_back(corner);
-  }
+  });
   if (corners.empty()) reject(file, 1, "contains no corner");
   return corners;
 }

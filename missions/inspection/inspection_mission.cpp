@@ -120,7 +120,7 @@ EditedInspection plan_edited_inspection(const InspectionPackage& package,
   report("planning the flight with waypoints");
   plan_flight(setup, *package.space, package.pad, stop, mission);
   if (!mission.flight && package.pad) {
-    edited.problems.push_back({0, "no route with waypoints: " + mission.flight_failure});
+    edited.problems.push_back({std::nullopt, "no route with waypoints: " + mission.flight_failure});
     return edited;
   }
   mission.warnings = make_warnings(setup, mission);

@@ -35,7 +35,8 @@ InspectionMission plan_inspection_mission(const config::MissionSetup& setup,
 /// Planned inspection whose corners have been changed.
 struct EditedInspection {
   InspectionMission mission;
-  std::vector<survey::inspection::LegProblem> problems;  ///< Empty: the flight is verified.
+  /// Empty: the flight is verified.
+  std::vector<survey::inspection::FlightProblem> problems;
   std::size_t slowed_legs = 0;  ///< Legs that are flown more slowly, to keep the motion limits.
   double added_delay = 0.0;     ///< Sum over all legs [s].
 };

@@ -20,8 +20,8 @@
 
 namespace skycap::missions::package {
 
-/// Vehicle of a fleet with its verified route. The route has no stations if none are assigned to
-/// the vehicle.
+/// Vehicle of a fleet with its verified route. The route has no capture points if none are assigned
+/// to the vehicle.
 struct FleetMember {
   /// Flight options of this vehicle, see FlightOptions::for_vehicle().
   flight::FlightOptions flight;
@@ -48,16 +48,16 @@ struct FleetMission {
 /// Upper limit of reported distances between vehicles [m].
 inline constexpr double reported_distance = 100.0;
 
-/// Division that is set by the caller: indices of stations per vehicle, in flight order.
+/// Division that is set by the caller: indices of capture points per vehicle, in flight order.
 using FleetOrders = std::vector<std::vector<std::uint32_t>>;
 
-/// Divides the stations of `alone`, the verified route of the first vehicle, among the vehicles.
-/// The division is based on the costs of verified legs. Each vehicle's route is planned and
-/// verified like in plan_flight(). Take-offs are delayed until the separation of all flights is
-/// verified. With `orders`, the division is that of the caller, and each vehicle flies its stations
-/// in this order or in reverse; stations that it cannot reach are listed by its route. Throws all
-/// errors of plan_route(). Throws Error{bad_config} if the stations cannot be divided, or if a
-/// vehicle violates the clearance to one on the ground.
+/// Divides the capture points of `alone`, the verified route of the first vehicle, among the
+/// vehicles. The division is based on the costs of verified legs. Each vehicle's route is planned
+/// and verified like in plan_flight(). Take-offs are delayed until the separation of all flights is
+/// verified. With `orders`, the division is that of the caller, and each vehicle flies its capture
+/// points in this order or in reverse; those that it cannot reach are listed by its route. Throws
+/// all errors of plan_route(). Throws Error{bad_config} if the capture points cannot be divided, or
+/// if a vehicle violates the clearance to one on the ground.
 FleetMission plan_fleet(const flight::FlightOptions& options, const flight::FreeSpace& measured,
                         const flight::Route& alone,
                         std::span<const flight::LandingSurface> landing_surfaces, unsigned threads,

@@ -100,10 +100,10 @@ std::string page_text(const std::string& title, Json data, const std::vector<Pag
 
 std::string with_background(std::string page, const std::string& name, std::string_view jpeg,
                             const std::array<Eigen::Vector2d, 4>& corners) {
-  Json places = Json::array();
-  for (const Eigen::Vector2d& corner : corners) places.push_back({corner.x(), corner.y()});
+  Json points = Json::array();
+  for (const Eigen::Vector2d& corner : corners) points.push_back({corner.x(), corner.y()});
   const Json data{
-      {"name", name}, {"corners", places}, {"image", "data:image/jpeg;base64," + base64(jpeg)}};
+      {"name", name}, {"corners", points}, {"image", "data:image/jpeg;base64," + base64(jpeg)}};
   const std::size_t at = page.find(data_begin);
   if (at != std::string::npos) {
     page.insert(at, data_block("application/json", "background", script_json(data)));

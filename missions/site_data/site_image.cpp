@@ -41,10 +41,10 @@ class PixelTransform {
 
   Vector2d to_site(const Vector2d& pixel) const {
     const std::array<double, 6>& a = image_.affine;
-    Vector3d place(a[0] + a[1] * pixel.x() + a[2] * pixel.y(),
-                   a[3] + a[4] * pixel.x() + a[5] * pixel.y(), 0.0);
-    transform_.to_site(std::span(&place, 1));
-    return place.head<2>();
+    Vector3d position(a[0] + a[1] * pixel.x() + a[2] * pixel.y(),
+                      a[3] + a[4] * pixel.x() + a[5] * pixel.y(), 0.0);
+    transform_.to_site(std::span(&position, 1));
+    return position.head<2>();
   }
 
   /// Returns the pixel at a position. The transformation is almost affine, so that Newton's method
@@ -78,10 +78,9 @@ SiteImage read_site_image(const std::filesystem::path& file, const SiteFrame& si
   FileContents contents;
   contents.crs = header.crs;
   if (header.crs.empty()) {
-    throw Error(ErrorKind::bad_config,
-                file.string() +
-                    ": names no coordinate reference system; set it with gdal_edit.py "
-                    "-a_srs");
+    throw Error(
+        ErrorKind::bad_config,
+        file.string() + ": has no coordinate reference system; set it with gdal_edit.py -a_srs");
   }
   const PixelTransform transform(header, SiteTransform(source, contents, site, false));
   Eigen::AlignedBox2d pixels;

@@ -224,7 +224,10 @@ class LegTimes {
   LegTimes(std::span<const double> durations, const Smoothing& smoothing)
       : reach_(smoothing.reach()) {
     double time = smoothing.reach();
-    for (const double duration : durations) starts_.push_back(time), time += duration;
+    for (const double duration : durations) {
+      starts_.push_back(time);
+      time += duration;
+    }
     starts_.push_back(time);
   }
   std::size_t count() const { return starts_.size() - 1; }
@@ -309,10 +312,12 @@ std::vector<std::string> find_problems(const InspectionOptions& options, const I
   const double distance = verified_distance(options, site, cloud, leg);
   if (distance < options.planned_clearance()) {
     std::size_t nearest = 0;
-    double least = std::numeric_limits<double>::infinity();
+    double min_distance = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i + 1 < leg.size(); ++i) {
       const double found = verified_distance(options, site, cloud, leg.subspan(i, 2));
-      if (found < least) least = found, nearest = i;
+      if (found >= min_distance) continue;
+      min_distance = found;
+      nearest = i;
     }
     const auto centimetres = [](double length) { return 0.01 * std::round(100.0 * length); };
     const Vector3d& at = leg[nearest].position;
@@ -323,23 +328,23 @@ std::vector<std::string> find_problems(const InspectionOptions& options, const I
         options.flown_deviation, " m for the flown curve)"));
   }
   constexpr double rounding = 1e-6;
-  double lowest = leg.front().position.z(), highest = lowest;
-  double least_pitch = leg.front().pitch, most_pitch = least_pitch;
+  double min_z = leg.front().position.z(), max_z = min_z;
+  double min_pitch = leg.front().pitch, max_pitch = min_pitch;
   for (const FlightSample& sample : leg) {
-    lowest = std::min(lowest, sample.position.z());
-    highest = std::max(highest, sample.position.z());
-    least_pitch = std::min(least_pitch, sample.pitch);
-    most_pitch = std::max(most_pitch, sample.pitch);
+    min_z = std::min(min_z, sample.position.z());
+    max_z = std::max(max_z, sample.position.z());
+    min_pitch = std::min(min_pitch, sample.pitch);
+    max_pitch = std::max(max_pitch, sample.pitch);
   }
-  if (site.min_height && lowest < *site.min_height - rounding) {
+  if (site.min_height && min_z < *site.min_height - rounding) {
     problems.push_back(
-        joined_text("height ", lowest, " m is below the minimum of ", *site.min_height, " m"));
+        joined_text("height ", min_z, " m is below the minimum of ", *site.min_height, " m"));
   }
-  if (site.max_height && highest > *site.max_height + rounding) {
+  if (site.max_height && max_z > *site.max_height + rounding) {
     problems.push_back(
-        joined_text("height ", highest, " m is above the maximum of ", *site.max_height, " m"));
+        joined_text("height ", max_z, " m is above the maximum of ", *site.max_height, " m"));
   }
-  if (least_pitch < options.pitch.min - rounding || most_pitch > options.pitch.max + rounding) {
+  if (min_pitch < options.pitch.min - rounding || max_pitch > options.pitch.max + rounding) {
     constexpr double degrees = geometry::degrees_per_radian;
     problems.push_back(joined_text("the gimbal pitch is outside of ", degrees * options.pitch.min,
                                    " to ", degrees * options.pitch.max, " degrees"));
@@ -505,7 +510,7 @@ GivenPlan follow_vertices(const InspectionOptions& options, const InspectionSite
   plan.verified_clearance = verified_distance(options, site, plan.cloud, plan.samples);
   plan.evaluation = evaluate_flight(plan.samples, plan.cloud, evaluation_options(options, threads));
   if (!plan.evaluation.keeps_limits()) {
-    given.problems.push_back({0, "the flight exceeds the motion limits of the vehicle"});
+    given.problems.push_back({std::nullopt, "the flight exceeds the motion limits of the vehicle"});
   }
   return given;
 }

@@ -93,18 +93,19 @@ inline constexpr double sample_interval = 0.1;
 InspectionPlan plan_inspection(const InspectionOptions& options, const InspectionSite& site,
                                const InspectionRun& run);
 
-/// Leg of a given polygon that violates a requirement.
-struct LegProblem {
-  std::size_t leg = 0;  ///< From vertex `leg` to the next one.
+/// Requirement that a flight along a given polygon violates.
+struct FlightProblem {
+  std::optional<std::size_t> leg;  ///< From vertex `leg` to the next one. Empty: whole flight.
   std::string what;
 };
 
 /// Flight along a given polygon.
 struct GivenPlan {
-  InspectionPlan plan;               ///< Without the figures of a search.
-  std::vector<LegProblem> problems;  ///< Empty: the flight keeps the clearance and all limits.
-  std::size_t slowed_legs = 0;       ///< Legs with a longer delay than given.
-  double added_delay = 0.0;          ///< Sum over all legs [s].
+  InspectionPlan plan;  ///< Without the figures of a search.
+  /// Empty: the flight keeps the clearance and all limits.
+  std::vector<FlightProblem> problems;
+  std::size_t slowed_legs = 0;  ///< Legs with a longer delay than given.
+  double added_delay = 0.0;     ///< Sum over all legs [s].
 };
 
 /// Evaluates and verifies the flight along `vertices` like the flight of plan_inspection(). Delays

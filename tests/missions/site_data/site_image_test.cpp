@@ -64,7 +64,7 @@ TEST_F(SiteImages, AreRejectedIfUnsuitable) {
               }),
               HasSubstr("ortho.tif: does not cover the site"));
   EXPECT_THAT(message({.has_16_bits = true}), HasSubstr("is not an image of 8 bits per colour"));
-  EXPECT_THAT(message({.has_crs = false}), HasSubstr("names no coordinate reference system"));
+  EXPECT_THAT(message({.has_crs = false}), HasSubstr("has no coordinate reference system"));
   EXPECT_THAT(message({.has_position = false}), HasSubstr("has no georeference"));
 }
 

@@ -300,7 +300,7 @@ TEST(FollowVertices, RejectsHeightsAndPitchesOutsideTheLimits) {
   vertices[2].position.z() = 10;
   const GivenPlan given = follow_vertices(options, site, vertices, {});
   std::string all;
-  for (const LegProblem& problem : given.problems) all += problem.what + "\n";
+  for (const FlightProblem& problem : given.problems) all += problem.what + "\n";
   EXPECT_THAT(all, testing::HasSubstr("height 10 m is above the maximum of 9 m"));
   EXPECT_THAT(all, testing::HasSubstr("the gimbal pitch is outside of "));
   EXPECT_THROW(follow_vertices(options, site, {vertices[0]}, {}), Error);
